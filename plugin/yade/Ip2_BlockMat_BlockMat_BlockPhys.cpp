@@ -37,8 +37,7 @@ void Ip2_BlockMat_BlockMat_BlockPhys::go(const shared_ptr<Material>& material1, 
 	phys->normalStiffness = matched(normalStiffness, a.normalStiffness, b.normalStiffness, harmonic(a.normalStiffness, b.normalStiffness));
 	phys->shearStiffness = matched(shearStiffness, a.shearStiffness, b.shearStiffness, harmonic(a.shearStiffness, b.shearStiffness));
 	phys->noSlip = (a.noSlip || b.noSlip) && !isSmooth(a) && !isSmooth(b);
-	const auto* geom = static_cast<const BlockGeom*>(interaction->geom.get()); // none: rigid blocks, which know no mortar
-	const bool isHead = geom && isHeadJoint(geom->normal);
+	const bool isHead = isHeadJoint(static_cast<const BlockGeom&>(*interaction->geom).normal);
 	const shared_ptr<JointMat> ofA = a.mortarOf(isHead), ofB = b.mortarOf(isHead);
 	if (ofA && ofB && ofA->isLike(*ofB))
 		phys->takeMortar(ofA);

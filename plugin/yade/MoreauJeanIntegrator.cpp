@@ -119,8 +119,8 @@ void MoreauJeanIntegrator::leaveScene()
 	chosenModel.clear();
 	along = Vector3r::Zero();
 	forgetImpacts(*this);
-	forget(frictDissip, impactDissip, dampDissip, crackDissip, bondedIds, bondedState, baseWork, potentialShift, worstResidual, substeps,
-	       events, unlocalised, sweeps, factorisations, movingSteps, madeEnergy, lostEnergy, turnedOver, lift, toldMade,
+	forget(frictDissip, impactDissip, dampDissip, crackDissip, bondedIds, bondedState, bondsAsked, baseWork, potentialShift, worstResidual,
+	       substeps, events, unlocalised, sweeps, factorisations, movingSteps, madeEnergy, lostEnergy, turnedOver, lift, toldMade,
 	       toldLost, failures, firstFailure, warned);
 }
 
@@ -300,7 +300,10 @@ RigidResults MoreauJeanIntegrator::stepRun()
 			checkEngines();
 		if (scene->dt != checkedTimeStep || gravity.norm() > checkedGravity)
 			checkTimeStep();
-		return sceneOf(memory).step(settings());
+		sceneOf(memory).ask(bondsAsked);
+		const RigidResults results = sceneOf(memory).step(settings());
+		bondsAsked.clear();
+		return results;
 	} catch (const LeavesPlane& obstacle) {
 		if (model == "planar")
 			throw std::runtime_error(

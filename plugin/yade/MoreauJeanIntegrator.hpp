@@ -30,6 +30,10 @@ public:
 	/// What the next step goes on from besides the states of the blocks: forces, contact points.
 	vector<Real> remembered();
 	void goOnFrom(const vector<Real>&);
+	/// As dem.bond asks; also with joints = 'pairs', those of the first two ids, the next two and so on. Returns the number of joints.
+	int bond(const vector<int>& ids, const shared_ptr<JointMat>& mortar, const string& joints);
+	/// The blocks of a run that another integrator of this scene has stepped, their bonds and cracks.
+	void goOnWith(MoreauJeanIntegrator& other);
 	/// Whether a script or another engine may look at O.interactions before the next step of this engine.
 	bool isWatched() const;
 	/// O.interactions as they are after the last step.
@@ -79,6 +83,7 @@ public:
 		((Real, crackDissip, 0, Attr::readonly, "Energy spent by the cracks of mortar so far [J]."))
 		((vector<int>, bondedIds, , Attr::readonly, "Two ids for each joint that has been bonded (dem.damage)."))
 		((vector<Real>, bondedState, , Attr::readonly, "Numbers of each joint that has been bonded, in rows of 13 as RockingJointEngine.bondedState (dem.damage)."))
+		((vector<Real>, bondsAsked, , Attr::readonly, "Joints that dem.bond has asked for and the next step makes, in rows of 7: two ids, tensile strength [Pa], fracture energy [J/m^2], cohesion [Pa], shear fracture energy [J/m^2] and tangent of the friction angle (NaN: that of the joint)."))
 		((Real, madeEnergy, 0, Attr::readonly, "Energy that integration errors have added so far [J]; lost energy is not subtracted."))
 		((Real, lostEnergy, 0, Attr::readonly, "Energy that integration errors have removed so far [J]; friction and impacts are not part of it. In the walls of method='wall' it is part of impactDissip and not known apart."))
 		((Real, turnedOver, 0, Attr::readonly, "Largest value so far of kinetic energy plus all dissipated energy [J]."))
@@ -101,6 +106,8 @@ public:
 		.add_property("elastPotential", &MoreauJeanIntegrator::elastPotential, "Elastic energy of the ties after the last step [J].")
 		.add_property("largestTimeStep", &MoreauJeanIntegrator::largestTimeStep, "Largest time step that is allowed [s].")
 		.add_property("remembered", &MoreauJeanIntegrator::remembered, &MoreauJeanIntegrator::goOnFrom, "State that the next step starts from, besides the states of the blocks (forces and contact points among it), as numbers. A script can restore it together with the states of the blocks to repeat a part of a run.")
+		.def("bond", &MoreauJeanIntegrator::bond, "Bonds pairs of bodies that touch now with a JointMat, in the next step; returns their number. ids: those of the bodies, both of a pair among them; an empty list: all. joints: 'all', 'bed' or 'head', or 'pairs' for the joints of the first two ids, the next two and so on.")
+		.def("goOnWith", &MoreauJeanIntegrator::goOnWith, "Takes over the blocks of another MoreauJeanIntegrator of the scene, their bonds and their damage, as dem.engines() does.")
 		.def("choice", &MoreauJeanIntegrator::choice, "Returns the model that the first step would choose in the present scene, and why; raises ValueError if it would refuse the scene.")
 	);
 	// clang-format on
@@ -143,6 +150,7 @@ private:
 	vector<const Body*> blocks() const;
 	bool hasMortar() const; // a block has it
 	void checkMortar(const Choice& choice) const;
+
 
 	vector<shared_ptr<Engine>> taken; // motions that the run has taken over
 	vector<shared_ptr<BlockTie>> takenTies;

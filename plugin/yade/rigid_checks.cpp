@@ -83,6 +83,8 @@ void MoreauJeanIntegrator::checkBlocks(const Choice& choice) const
 
 bool MoreauJeanIntegrator::hasMortar() const
 {
+	if (!bondsAsked.empty() || !bondedIds.empty())
+		return true;
 	const vector<const Body*> all = blocks();
 	return std::any_of(all.begin(), all.end(), [](const Body* body) {
 		const auto* material = dynamic_cast<const BlockMat*>(body->material.get());
@@ -103,9 +105,6 @@ void MoreauJeanIntegrator::checkMortar(const Choice& choice) const
 			                            "mortar is not allowed here: of rigid blocks, those of method='wall' in one upright plane "
 			                            "have it; leave it out," +
 			                            other);
-		if (material->headMortar || material->unfilledHeads)
-			throw std::invalid_argument(of + (material->headMortar ? "headMortar" : "unfilledHeads") +
-			                            " is not allowed with method='wall', where all joints have the same mortar: leave it out," + other);
 	}
 	for (const auto& motion : livingMotions())
 		if (const auto* pulses = dynamic_cast<const PulseTrainEngine*>(motion.get()); pulses && pulses->shape == "dirac" && hasMortar())

@@ -47,26 +47,9 @@ RigidResults RigidScene<K>::step(const RigidSettings& given)
 	if (!settings.walls && !system.mortar.empty())
 		throw std::invalid_argument("MoreauJeanIntegrator.method = 'localised' is not allowed: blocks have been bonded with mortar, which "
 		                            "method='wall' knows.");
-	try {
-		if (mayHaveChanged()) {
-			system.gravity = coordinates.gravity(settings.gravity);
-			readLoads();
-		}
-		readStates();
-		readLaws();
-		readTies();
-		if (!neighbours->isValid(system, scene.dt)) {
-			showPoints();
-			neighbours->update(system, scene.dt);
-			renewContacts();
-		}
-		if (bonds)
-			bond();
-		bonds = false;
-	} catch (...) {
-		forgetStates();
-		throw;
-	}
+	takeScene();
+	if (bonds || !asked.empty())
+		bond();
 	if (settings.walls != byWalls) {
 		system.moved = true;
 		system.startAnew();
@@ -82,6 +65,28 @@ RigidResults RigidScene<K>::step(const RigidSettings& given)
 	if (++unshown >= maxUnshown || settings.watched)
 		writeContacts();
 	return results(report);
+}
+
+template <class K>
+void RigidScene<K>::takeScene()
+{
+	try {
+		if (mayHaveChanged()) {
+			system.gravity = coordinates.gravity(settings.gravity);
+			readLoads();
+		}
+		readStates();
+		readLaws();
+		readTies();
+		if (!neighbours->isValid(system, scene.dt)) {
+			showPoints();
+			neighbours->update(system, scene.dt);
+			renewContacts();
+		}
+	} catch (...) {
+		forgetStates();
+		throw;
+	}
 }
 
 template <class K>

@@ -59,6 +59,16 @@ struct RigidEnergies { // J, since the start of the run
 	Real frictDissip, impactDissip, tieDissip, crackDissip, baseWork, potentialShift;
 };
 
+/// By the number of a body before: its number now, or -1. `inBefore`: the other way round.
+inline vector<int> placesNow(const vector<int>& inBefore, size_t count)
+{
+	vector<int> now(count, -1);
+	for (size_t b = 0; b < inBefore.size(); ++b)
+		if (inBefore[b] >= 0)
+			now[inBefore[b]] = int(b);
+	return now;
+}
+
 /// Results of a step.
 struct RigidResults {
 	masonry::StepReport report;
@@ -68,6 +78,18 @@ struct RigidResults {
 	masonry::wall::AssemblyReport walls;
 	int localisedBlocks = 0; // beside walls
 };
+
+/// Two blocks that touch along a face.
+struct BlockJoint {
+	int id1, id2;
+	bool isHead;
+};
+
+/// Numbers of a row of MoreauJeanIntegrator.bondsAsked.
+constexpr size_t sizeOfAskedBond = 7;
+
+/// Throws std::invalid_argument where joints without stiffness cannot have this mortar.
+void checkRigid(const JointMat& mortar, int id1, int id2);
 
 class AnyRigidScene : public RigidRun {
 public:
@@ -84,7 +106,11 @@ public:
 	virtual std::pair<vector<int>, vector<int>> blocksAndPrescribed(const vector<int>& bodies) const = 0;
 	virtual void setInstant(Real) = 0;
 	/// Brings MoreauJeanIntegrator.bondedIds and bondedState up to date.
-	virtual void writeMortar(vector<int>& ids, vector<Real>& rows) const = 0;
+	virtual void writeMortar(vector<int>& ids, vector<Real>& rows) = 0;
+	/// Those in which mortar may be.
+	virtual vector<BlockJoint> jointsInTouch() = 0;
+	/// Rows of MoreauJeanIntegrator.bondsAsked, for the next step.
+	virtual void ask(const vector<Real>& bonds) = 0;
 	/// Takes the interactions of erased bodies out of O.interactions.
 	virtual void dropErased() = 0;
 };
@@ -129,7 +155,9 @@ public:
 	bool neverSlips() const override;
 	std::pair<vector<int>, vector<int>> blocksAndPrescribed(const vector<int>& bodies) const override;
 	void setInstant(Real instant) override;
-	void writeMortar(vector<int>& ids, vector<Real>& rows) const override;
+	void writeMortar(vector<int>& ids, vector<Real>& rows) override;
+	vector<BlockJoint> jointsInTouch() override;
+	void ask(const vector<Real>& rows) override { asked = rows; }
 	void dropErased() override { contacts.dropErased(); }
 
 private:
@@ -153,8 +181,11 @@ private:
 	void addTies(const Remembered<K>& before);
 
 	void addMortar(const Remembered<K>& before, const vector<int>& inBefore);
+	bool isJoint(const Pair& pair) const;
+	masonry::MortarLaw askedLaw(const Real* row, size_t pair) const;
 	void bond();
 	void checkLawsOfMortar() const;
+	void findRows(vector<int>& ids, vector<Real>& rows);
 
 	void forgetNeighbours();
 	/// After a scene has been refused: all is read again when a script has put it right.
@@ -171,6 +202,8 @@ private:
 	/// another thread changes meanwhile is met some steps late.
 	bool mayHaveChanged() const { return unshown <= 1; }
 
+	/// States, loads, laws and pairs as they are before a step.
+	void takeScene();
 	void readLoads();
 	/// Bodies that a script has moved or pushed since the last step. The base goes where its motion says.
 	void readStates();
@@ -218,6 +251,8 @@ private:
 	bool changed = false;                                           // what is moved, and how, is not as it was
 	bool byWalls = false;
 	bool bonds = false;        // no step has been made: blocks that touch are to be bonded
+	vector<Real> asked;        // rows of MoreauJeanIntegrator.bondsAsked
+	vector<size_t> rowOf;      // of bondedState, by joint with mortar
 	bool ownsContacts = false; // what O.interactions shows of blocks is of this object
 	int unshown = 1;           // steps since the interactions were written
 	std::unique_ptr<masonry::Neighbours<K>> neighbours;

@@ -158,10 +158,10 @@ void RigidScene<K>::addDrives(const vector<BaseMotionEngine*>& engines, const ve
 template <class K>
 void RigidScene<K>::addPairs(const Remembered<K>& before, const vector<int>& inBefore)
 {
-	const auto now = [&](int k) { return int(std::find(inBefore.begin(), inBefore.end(), k) - inBefore.begin()); };
-	const auto stays = [&](int b, int k) { return b < int(links.size()) && before.hasShape(k, *system.bodies[b].shape); };
+	const vector<int> now = placesNow(inBefore, before.bodies.size());
+	const auto stays = [&](int b, int k) { return b >= 0 && before.hasShape(k, *system.bodies[b].shape); };
 	for (Pair pair : before.pairs) {
-		const int then1 = std::exchange(pair.body1, now(pair.body1)), then2 = std::exchange(pair.body2, now(pair.body2));
+		const int then1 = std::exchange(pair.body1, now[pair.body1]), then2 = std::exchange(pair.body2, now[pair.body2]);
 		if (stays(pair.body1, then1) && stays(pair.body2, then2))
 			system.pairs.push_back(pair);
 	}

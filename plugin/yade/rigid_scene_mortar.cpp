@@ -6,28 +6,25 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace yade {
 
 namespace {
 
+constexpr Real infinite = std::numeric_limits<Real>::infinity();
 constexpr size_t stateSize = 13;  // numbers of a row of bondedState
 constexpr Real firstCrack = 0.02; // largest damage from which a joint counts as cracked
 constexpr Real closeBy = 1e-4; // gap up to which blocks touch, and length of a joint from which on it is one, relative to their thickness
 
 std::string pairOf(int id1, int id2) { return sentence("The joint of bodies ", id1, " and ", id2); }
 
-/// Rigid joints have no stiffness.
-masonry::MortarLaw lawOf(const JointMat& mortar, Real friction, int id1, int id2)
+/// Rigid joints have no stiffness. `friction`: of the joint.
+masonry::MortarLaw checked(masonry::MortarLaw law, Real friction, int id1, int id2)
 {
-	constexpr Real infinite = std::numeric_limits<Real>::infinity();
 	const std::string joint = pairOf(id1, id2);
-	if (!std::isnan(mortar.flexuralStrength))
-		throw std::invalid_argument(sentence(joint, " has mortar with flexuralStrength = ", mortar.flexuralStrength,
-		                                     " Pa: a rigid joint bears three times the moment at which its edge reaches its strength: "
-		                                     "give tensileStrength = ",
-		                                     mortar.flexuralStrength / 3, " with method='wall'."));
-	masonry::MortarLaw law = mortar.law(infinite, infinite, friction, id1, id2);
+	if (std::isnan(law.friction))
+		law.friction = friction;
 	law.normalStiffness = law.shearStiffness = infinite;
 	if (!(law.friction > 0) || !std::isfinite(law.friction))
 		throw std::invalid_argument(sentence(joint, " has mortar and the tangent of friction ", law.friction,
@@ -41,20 +38,45 @@ masonry::MortarLaw lawOf(const JointMat& mortar, Real friction, int id1, int id2
 	return law;
 }
 
+masonry::MortarLaw lawOf(const JointMat& mortar, Real friction, int id1, int id2)
+{
+	checkRigid(mortar, id1, id2);
+	return checked(mortar.law(infinite, infinite, NaN, id1, id2), friction, id1, id2);
+}
+
+/// The joint of two bodies in a list that is sorted by them, or its end.
+template <class Joints>
+auto jointOf(Joints& joints, const std::pair<int, int>& bodies)
+{
+	const auto at = std::lower_bound(joints.begin(), joints.end(), bodies, [](const auto& joint, const std::pair<int, int>& of) {
+		return std::pair(joint.body1, joint.body2) < of;
+	});
+	return at != joints.end() && std::pair(at->body1, at->body2) == bodies ? at : joints.end();
+}
+
 } // namespace
+
+void checkRigid(const JointMat& mortar, int id1, int id2)
+{
+	if (!std::isnan(mortar.flexuralStrength))
+		throw std::invalid_argument(sentence(pairOf(id1, id2), " has mortar with flexuralStrength = ", mortar.flexuralStrength,
+		                                     " Pa: a rigid joint bears three times the moment at which its edge reaches its strength: "
+		                                     "give tensileStrength = ",
+		                                     mortar.flexuralStrength / 3, " with method='wall'."));
+}
 
 /// Joints of the run that goes on, but those of blocks that are gone.
 template <class K>
 void RigidScene<K>::addMortar(const Remembered<K>& before, const vector<int>& inBefore)
 {
-	const auto now = [&](int k) { return int(std::find(inBefore.begin(), inBefore.end(), k) - inBefore.begin()); };
+	const vector<int> now = placesNow(inBefore, before.bodies.size());
 	for (masonry::MortarJoint<K> joint : before.mortar) {
-		joint.body1 = now(joint.body1);
-		joint.body2 = now(joint.body2);
-		if (std::max(joint.body1, joint.body2) < int(links.size()))
+		joint.body1 = now[joint.body1];
+		joint.body2 = now[joint.body2];
+		if (std::min(joint.body1, joint.body2) >= 0)
 			system.mortar.push_back(joint);
 	}
-	bonds = before.ids.empty();
+	bonds = before.ids.empty() || (settings.begins && before.mortar.empty());
 }
 
 /// Joints of blocks that touch and both have the same mortar. MoreauJeanIntegrator::checkBlocks lets no mortar come to space.
@@ -63,35 +85,81 @@ void RigidScene<Space>::bond()
 {
 }
 
+/// Blocks touch along a face.
+template <class K>
+bool RigidScene<K>::isJoint(const Pair& pair) const
+{
+	const Real thickness = std::min(links[pair.body1].properties.shape.thickness(), links[pair.body2].properties.shape.thickness());
+	const auto isClosed = [&](const auto& point) { return point.gap <= closeBy * thickness; };
+	return pair.size() > 1 && std::all_of(pair.points.begin(), pair.points.end(), isClosed);
+}
+
+template <class K>
+vector<BlockJoint> RigidScene<K>::jointsInTouch()
+{
+	takeScene();
+	vector<BlockJoint> result;
+	for (const Pair& pair : system.pairs)
+		if (isJoint(pair))
+			result.push_back(
+			    {kept.ids[pair.body1], kept.ids[pair.body2], isHeadJoint(coordinates.out(pair.points[0].frame.axes.row(0).transpose()))});
+	return result;
+}
+
+template <class K>
+masonry::MortarLaw RigidScene<K>::askedLaw(const Real* row, size_t c) const
+{
+	const Pair& pair = system.pairs[c];
+	masonry::MortarLaw law;
+	law.tensileStrength = row[2];
+	law.fractureEnergy = row[3];
+	law.cohesion = row[4];
+	law.shearFractureEnergy = row[5];
+	law.friction = row[6];
+	return checked(law, contacts.law(c).noSlip ? infinite : contacts.law(c).tangensOfFrictionAngle, kept.ids[pair.body1],
+	               kept.ids[pair.body2]);
+}
+
 template <>
 void RigidScene<Plane>::bond()
 {
-	system.mortar.clear();
+	std::map<std::pair<int, int>, const Real*> rows; // the last one of a pair counts
+	for (size_t row = 0; row + sizeOfAskedBond <= asked.size(); row += sizeOfAskedBond)
+		rows[std::minmax(int(asked[row]), int(asked[row + 1]))] = &asked[row];
+	std::map<std::pair<int, int>, masonry::MortarJoint<Plane>> made;
 	for (size_t c = 0; c < system.pairs.size(); ++c) {
 		const Pair& pair = system.pairs[c];
-		const shared_ptr<JointMat>& mortar = contacts.law(c).mortar;
-		if (!mortar || pair.size() != 2)
-			continue;
 		const int id1 = kept.ids[pair.body1], id2 = kept.ids[pair.body2];
-		const Properties &one = links[pair.body1].properties, &other = links[pair.body2].properties;
-		const Real thickness = std::min(one.shape.thickness(), other.shape.thickness());
-		if (std::max(pair.points[0].gap, pair.points[1].gap) > closeBy * thickness)
+		const auto row = rows.find(std::minmax(id1, id2));
+		const shared_ptr<JointMat>& mortar = contacts.law(c).mortar;
+		if (!(row != rows.end() || (bonds && mortar)) || !isJoint(pair))
 			continue;
-		const auto depthOf = [&](int b, const Properties& properties) {
-			return 2 * properties.shape.reach(links[b].state->ori.conjugate() * coordinates.normal);
+		const auto depthOf = [&](int b) {
+			return 2 * links[b].properties.shape.reach(links[b].state->ori.conjugate() * coordinates.normal);
 		};
-		const Real depth = std::min(depthOf(pair.body1, one), depthOf(pair.body2, other));
-		const masonry::MortarJoint<Plane> joint =
-		    masonry::wall::mortarJoint(system, pair, lawOf(*mortar, contacts.law(c).tangensOfFrictionAngle, id1, id2), depth);
+		const Real depth = std::min(depthOf(pair.body1), depthOf(pair.body2));
+		const masonry::MortarLaw law =
+		    row != rows.end() ? askedLaw(row->second, c) : lawOf(*mortar, contacts.law(c).tangensOfFrictionAngle, id1, id2);
+		const masonry::MortarJoint<Plane> joint = masonry::wall::mortarJoint(system, pair, law, depth);
+		const Real thickness = std::min(links[pair.body1].properties.shape.thickness(), links[pair.body2].properties.shape.thickness());
 		if (!(joint.area > closeBy * thickness * depth))
 			continue;
-		const auto isSame = [&](const masonry::MortarJoint<Plane>& o) { return o.body1 == joint.body1 && o.body2 == joint.body2; };
-		if (std::any_of(system.mortar.begin(), system.mortar.end(), isSame))
+		if (!made.emplace(std::pair(joint.body1, joint.body2), joint).second)
 			throw std::invalid_argument(pairOf(id1, id2) +
 			                            " has mortar on two faces: method='wall' bonds one face of a pair; take model='compliant'.");
-		system.mortar.push_back(joint);
+		contacts.setFriction(c, law.friction);
 	}
+	for (const masonry::MortarJoint<Plane>& old : system.mortar)
+		if (!bonds)
+			made.emplace(std::pair(old.body1, old.body2), old);
+	system.mortar.clear();
+	for (const auto& [bodies, joint] : made)
+		system.mortar.push_back(joint);
+	takeLaws();
 	checkLawsOfMortar();
+	rowOf.clear();
+	asked.clear();
+	bonds = false;
 }
 
 /// An instant has no time in which mortar could spend energy.
@@ -105,28 +173,46 @@ void RigidScene<K>::checkLawsOfMortar() const
 			             ": it must be left out where blocks of method='wall' have mortar, which no impact at an instant can crack."));
 }
 
-/// Rows of dem.damage(), beyond the end of a joint.
+/// Joints that are not listed yet come last: who records the rows counts on it.
 template <class K>
-void RigidScene<K>::writeMortar(vector<int>& ids, vector<Real>& rows) const
+void RigidScene<K>::findRows(vector<int>& ids, vector<Real>& rows)
 {
-	size_t row = 0; // both lists are in the same order
+	std::map<std::pair<int, int>, size_t> listed;
+	for (size_t row = 0; 2 * row < ids.size(); ++row)
+		listed[{ids[2 * row], ids[2 * row + 1]}] = row;
+	rowOf.clear();
 	for (const masonry::MortarJoint<K>& joint : system.mortar) {
 		const int id1 = kept.ids[joint.body1], id2 = kept.ids[joint.body2];
-		while (2 * row < ids.size() && (ids[2 * row] != id1 || ids[2 * row + 1] != id2))
-			++row;
-		if (2 * row == ids.size()) {
-			ids.insert(ids.end(), {id1, id2});
-			const auto& pose = system.bodies[joint.body2].pose;
-			typename K::Vector middle = K::Vector::Zero();
-			for (const auto& point : joint.points)
-				middle += pose.toGlobal(point.place2) / double(joint.points.size());
-			const Vector3r at = pointInScene(coordinates, middle, kept.seats[joint.body2].depth);
-			rows.insert(rows.end(), {at.x(), at.y(), at.z(), joint.area, 0, 0, 0, 0, 0, 0, 0, NaN, NaN});
-		}
-		if (joint.isSound())
+		const auto [row, isNew] = listed.emplace(std::pair(id1, id2), ids.size() / 2);
+		rowOf.push_back(row->second);
+		if (!isNew)
 			continue;
-		Real* of = &rows.at(row * stateSize + 4);
+		ids.insert(ids.end(), {id1, id2});
+		const auto& pose = system.bodies[joint.body2].pose;
+		typename K::Vector middle = K::Vector::Zero();
+		for (const auto& point : joint.points)
+			middle += pose.toGlobal(point.place2) / double(joint.points.size());
+		const Vector3r at = pointInScene(coordinates, middle, kept.seats[joint.body2].depth);
+		rows.insert(rows.end(), {at.x(), at.y(), at.z(), joint.area, 0, 0, 0, 0, 0, 0, 0, NaN, NaN});
+	}
+}
+
+/// Rows of dem.damage(), beyond the end of a joint.
+template <class K>
+void RigidScene<K>::writeMortar(vector<int>& ids, vector<Real>& rows)
+{
+	if (rowOf.size() != system.mortar.size())
+		findRows(ids, rows);
+	for (size_t j = 0; j < system.mortar.size(); ++j) {
+		const masonry::MortarJoint<K>& joint = system.mortar[j];
+		Real* of = &rows.at(rowOf[j] * stateSize + 4);
+		if (joint.isSound() && of[1] == 0)
+			continue;
 		std::fill(of, of + 7, 0);
+		if (joint.isSound()) { // new mortar, or a script has gone back to an earlier state
+			of[7] = of[8] = NaN;
+			continue;
+		}
 		of[0] = joint.damage();
 		for (const auto& point : joint.points) {
 			of[1] = std::max(of[1], 1 - point.state.strength());
@@ -155,8 +241,7 @@ void RigidScene<Plane>::showMortar()
 {
 	for (size_t c = 0; c < system.pairs.size() && !system.mortar.empty(); ++c) {
 		const Pair& pair = system.pairs[c];
-		const auto isOf = [&](const masonry::MortarJoint<Plane>& o) { return o.body1 == pair.body1 && o.body2 == pair.body2; };
-		const auto joint = std::find_if(system.mortar.begin(), system.mortar.end(), isOf);
+		const auto joint = jointOf(system.mortar, {pair.body1, pair.body2});
 		if (joint == system.mortar.end())
 			continue;
 		const auto &pose1 = system.bodies[pair.body1].pose, &pose2 = system.bodies[pair.body2].pose;
@@ -179,7 +264,9 @@ template void RigidScene<Plane>::addMortar(const Remembered<Plane>&, const vecto
 template void RigidScene<Space>::addMortar(const Remembered<Space>&, const vector<int>&);
 template void RigidScene<Plane>::checkLawsOfMortar() const;
 template void RigidScene<Space>::checkLawsOfMortar() const;
-template void RigidScene<Plane>::writeMortar(vector<int>&, vector<Real>&) const;
-template void RigidScene<Space>::writeMortar(vector<int>&, vector<Real>&) const;
+template void RigidScene<Plane>::writeMortar(vector<int>&, vector<Real>&);
+template void RigidScene<Space>::writeMortar(vector<int>&, vector<Real>&);
+template vector<BlockJoint> RigidScene<Plane>::jointsInTouch();
+template vector<BlockJoint> RigidScene<Space>::jointsInTouch();
 
 } // namespace yade

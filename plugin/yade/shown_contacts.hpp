@@ -24,6 +24,13 @@ public:
 	/// The law of a pair, which scripts may change through its interaction.
 	const BlockPhys& law(size_t pair) const { return *contacts[contactOfPair[pair]].phys; }
 
+	void setFriction(size_t pair, Real tangent)
+	{
+		BlockPhys& phys = *contacts[contactOfPair[pair]].phys;
+		phys.noSlip = false;
+		phys.tangensOfFrictionAngle = tangent;
+	}
+
 	/// Force of a pair's mortar beside that of its points.
 	void setLoad(size_t pair, const masonry::BondLoad& load) { contacts[contactOfPair[pair]].phys->load = load; }
 
@@ -72,7 +79,7 @@ public:
 			contactOfPair.push_back(contacts.size());
 			while (before != old.end() && idsOf(*before) < wanted)
 				drop();
-			contacts.push_back(before != old.end() && idsOf(*before) == wanted ? *before++ : contactOf(wanted));
+			contacts.push_back(before != old.end() && idsOf(*before) == wanted ? *before++ : contactOf(wanted, pair));
 		}
 		while (before != old.end())
 			drop();
@@ -119,7 +126,7 @@ private:
 		shared_ptr<BlockPhys> phys;
 	};
 
-	Contact contactOf(std::pair<Body::id_t, Body::id_t> ids)
+	Contact contactOf(std::pair<Body::id_t, Body::id_t> ids, const Pair& pair)
 	{
 		Contact contact;
 		contact.interaction = scene.interactions->find(ids.first, ids.second);
@@ -131,20 +138,21 @@ private:
 				return contact;
 			}
 		}
-		return newContact(ids.first, ids.second);
+		return newContact(ids.first, ids.second, pair.points.empty() ? Vector3r(Vector3r::UnitZ()) : normalOf(pair.points[0]));
 	}
 
-	Contact newContact(Body::id_t id1, Body::id_t id2)
+	Contact newContact(Body::id_t id1, Body::id_t id2, const Vector3r& normal)
 	{
 		const Body &body1 = *scene.bodies->body[id1], &body2 = *scene.bodies->body[id2];
 		Contact contact;
 		contact.interaction.reset(new Interaction(id1, id2));
-		pairLaw->go(body1.material, body2.material, contact.interaction);
-		contact.phys = boost::static_pointer_cast<BlockPhys>(contact.interaction->phys);
 		contact.geom.reset(new BlockGeom);
+		contact.geom->normal = normal;
 		contact.geom->refR1 = BlockShape(*body1.shape).thickness();
 		contact.geom->refR2 = BlockShape(*body2.shape).thickness();
 		contact.interaction->geom = contact.geom;
+		pairLaw->go(body1.material, body2.material, contact.interaction); // reads the normal: head joints may have mortar of their own
+		contact.phys = boost::static_pointer_cast<BlockPhys>(contact.interaction->phys);
 		keepStill(*contact.interaction, pairLaw);
 		return contact;
 	}
@@ -180,7 +188,7 @@ private:
 	void list(Contact& contact)
 	{
 		if (!contact.interaction->isReal())
-			contact = newContact(contact.interaction->id1, contact.interaction->id2);
+			contact = newContact(contact.interaction->id1, contact.interaction->id2, contact.geom->normal);
 		const auto other = scene.interactions->find(contact.interaction->id1, contact.interaction->id2); // a collider's
 		if (other)
 			scene.interactions->erase(other->id1, other->id2, other->linIx);

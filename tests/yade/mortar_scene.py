@@ -7,6 +7,7 @@ from yade import O, PyRunner, Vector3
 EINDHOVEN = dict(tensileStrength=0.25e6, fractureEnergy=18, cohesion=0.35e6, shearFractureEnergy=125, frictionAngle=0.6435011087932844,
                  normalStiffness=82e9, shearStiffness=36e9)  # Pa, J/m^2, rad (tangent 0.75), Pa/m
 SIZE = (0.1, 0.2, 0.05)
+BRICK_WALL = (0.2, 0.1, 0.05)  # m, a brick of a wall
 AREA = SIZE[0] * SIZE[1]
 
 

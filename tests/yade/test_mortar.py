@@ -198,7 +198,7 @@ def test_rigid_blocks_refuse_mortar():
         refuses(lambda: dem.engines(model=model), f"model = '{model}'", "compliant")
     refuses(lambda: dem.engines(method="localised"), "method = 'localised'", "mortar", "compliant")
     refuses(lambda: dem.engines(tolerance=1e-6), "tolerance = 1e-06", "mortar", "compliant")
-    refuses(dem.TiltTable, "TiltTable", "mortar", "compliant")
+    refuses(lambda: dem.TiltTable(method="localised"), "method", "'wall'")
     O.dt = 1e-4
     for given in ({"method": "localised"}, {"method": "wall", "tolerance": 1e-3, "model": "spatial"}):
         O.engines = [dem.MoreauJeanIntegrator(**given)]

@@ -124,8 +124,6 @@ def test_what_is_refused():
     refuses(lambda: rigid_engines(dem.PulseTrainEngine(ids=[0], impulse=0.1, times=[0.1]), method="wall"), "dirac", "mortar")
     O.engines = rigid_engines(method="wall")
     O.step()
-    refuses(lambda: dem.bond(material=dem.JointMat(**STRENGTHS)), "BlockMat(mortar=)")
-    refuses(lambda: rigid_engines(method="wall"), "O.engines")
     O.engines[-1].method = "localised"
     O.engines[-1].tolerance = 1e-6
     refuses(O.step, "method = 'localised'", kind=(RuntimeError, ValueError))

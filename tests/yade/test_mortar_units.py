@@ -146,7 +146,6 @@ def test_bad_heads_and_units():
     base = dem.base((2, 1, 0.2), dry)
     dem.wall(2, 2, BRICK, dry, on=base, split=dem.JointMat(**UNIT))
     refuses(lambda: dem.engines(model="planar"), "model = 'planar'", "compliant")
-    refuses(dem.TiltTable, "split", "compliant")
     O.reset()
     one, other = brick_material(headMortar=eindhoven(fractureEnergy=20)), brick_material()
     base = dem.base((2, 1, 0.2), one)

@@ -192,8 +192,6 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         if tolerance is not None or others or method != "auto":
             raise ValueError("tolerance, others and method are for rigid blocks: they must be left out with model='compliant'")
         return _compliant(blocks, motions, reason, dt, penetration or _PENETRATION, impact_order or "simultaneous", gravity, recorders, loads)
-    if mortars:
-        _check_rigid_mortar()
     if any(one.held for one in pushes):
         raise ValueError(HELD_RIGID)
     if penetration is not None:
@@ -202,11 +200,15 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     return _rigid(motions, model, method, bool(mortars), dt, tolerance, impact_order, gravity, recorders, [*loads, *others])
 
 
-def _check_rigid_mortar():
-    if units():
-        raise ValueError("the scene has units that may split (dem.wall(split=)): must have model='compliant' instead of method='wall'")
-    if O.iter > 0 and getattr(joint_engine(), "bondedIds", None):
-        raise ValueError("O.engines have bonded joints in this run, and new engines of rigid blocks do not know their damage: keep the engines, and change their attributes")
+def _go_on_with_mortar(new):
+    """The bonds of the engine that steps the scene now, and those of units that may split, for a new engine of the same model."""
+    before = joint_engine()
+    if O.iter > 0 and getattr(before, "bondedIds", None) and not isinstance(before, type(new)):
+        raise ValueError("O.engines have bonded joints in this run, whose damage engines of another model do not know: give dem.engines() the model that the run began with")
+    if O.iter == 0:
+        for material, pairs in units().values():
+            new.bond([id for pair in pairs for id in pair], material, "pairs")
+    return before if isinstance(before, type(new)) else None
 
 
 def _rigid(motions, model, method, mortared, dt, tolerance, impact_order, gravity, recorders, others):
@@ -236,6 +238,11 @@ def _rigid(motions, model, method, mortared, dt, tolerance, impact_order, gravit
     if not step <= integrator.largestTimeStep:
         raise ValueError(f"dt = {dt}: must be at most {integrator.largestTimeStep:.3g} s, 0.15 sqrt(R/g) of the smallest block")
     O.dt = float(step)
+    before = _go_on_with_mortar(integrator)
+    if before and (before.bondsAsked or O.iter > 0 and before.bondedIds):
+        if not wall:
+            raise ValueError(f"method = {shown(method)}: must be 'wall', where blocks have been bonded with mortar")
+        integrator.goOnWith(before)
     print(f"masonry.dem: rigid blocks, {choice}; dt = {O.dt:.3g} s{notes.of_records(motions)}")
     return [wrapper.ForceResetter(), *others, *recorders, integrator]
 
@@ -247,10 +254,8 @@ def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, 
     if chosen:
         reasons.append(chosen)
 
-    joints, before = wrapper.RockingJointEngine(impactOrder=impact_order, ties=ties()), joint_engine()
-    if O.iter == 0:
-        for material, pairs in units().values():
-            joints.bond([id for pair in pairs for id in pair], material, "pairs")
+    joints = wrapper.RockingJointEngine(impactOrder=impact_order, ties=ties())
+    before = _go_on_with_mortar(joints)
     bonded = getattr(before, "bondedIds", None) or []
     if getattr(before, "bondsAsked", None) or O.iter > 0 and any(O.interactions.has(*pair) for pair in zip(bonded[::2], bonded[1::2])):
         joints.goOnFrom(before)

@@ -30,10 +30,10 @@ def bond(ids=None, material=None, joints="all"):
     """Bonds the joints of blocks that touch now, as they are, without stress: what the blocks weigh stays on the joints. Returns the number of joints.
 
     ids         of blocks and bases, a list: joints of which both bodies are named; None: all
-    material    a JointMat. Stiffness and friction angle that it does not give are those of the joint
+    material    a JointMat. Stiffness (compliant joints) and friction angle that it does not give are those of the joint
     joints      'all', 'bed' or 'head': head joints have upright faces
 
-    Raises ValueError where no two of the bodies touch. The scene must have its engines of model='compliant' (with method='wall' the mortar of the BlockMats bonds blocks when the run starts); the bonds act from the next step on. A joint that has been bonded before gets new mortar."""
+    Raises ValueError where no two of the bodies touch. The scene must have its engines, of model='compliant' or, in one upright plane, of method='wall'; the bonds act from the next step on. A joint that has been bonded before gets new mortar."""
     check_joint_material(material)
     if ids is not None and not (np.iterable(ids) and all(is_whole(id, 0) for id in ids)):
         raise ValueError(f"ids = {shown(ids)}: must be a list of ids of bodies, whole numbers from 0 on, or None for all")
@@ -41,7 +41,9 @@ def bond(ids=None, material=None, joints="all"):
         block_body(int(id))
     if joints not in _JOINTS:
         raise ValueError(f"joints = {shown(joints)}: must be 'all', 'bed' or 'head'")
-    engine = _compliant_engine()
+    engine = joint_engine_given()
+    if isinstance(engine, wrapper.MoreauJeanIntegrator) and engine.method != "wall":
+        raise ValueError(f"method = {shown(engine.method)}: rigid blocks are bonded by dem.engines(method='wall') only, in one upright plane; or take model='compliant'")
     if ids is not None and not len(ids):
         return 0
     if ids is not None and len(set(map(int, ids))) < 2:
@@ -61,10 +63,3 @@ def scatter(mortar, cov=0.3, seed=1):
     if not 0 <= number_given("cov", cov) <= 1:
         raise ValueError(f"cov = {cov}: must be from 0 to 1")
     return wrapper.JointMat(**{**mortar.dict(), "scatter": float(cov), "seed": whole_given("seed", seed, 0, 2**31 - 1)})
-
-
-def _compliant_engine():
-    engine = joint_engine_given()
-    if not isinstance(engine, wrapper.RockingJointEngine):
-        raise ValueError("O.engines are those of rigid blocks, which dem.bond cannot bond: give BlockMat(mortar=) before the run with method='wall', or take O.engines = dem.engines(model='compliant')")
-    return engine

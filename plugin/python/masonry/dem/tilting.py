@@ -14,11 +14,12 @@ from masonry.dem.bodies import blocks, geometry, poses, reach, shapes_of, world_
 from masonry.dem.collapse import Collapse, Trial
 from masonry.dem.describing import about
 from masonry.dem.engines import METHODS, engines
+from masonry.dem.joint_engine import joint_engine
 from masonry.dem.loads import load_engines
 from masonry.dem.mechanism import Mechanism
+from masonry.dem.mortar import damage
 from masonry.dem.stiffness import has_stiffness
 from masonry.dem.ties import tied
-from masonry.dem.units import units
 from tqdm import tqdm
 from yade import O, Vector3
 
@@ -52,6 +53,8 @@ _MOST = 30
 # Movement of a block, relative to what is collapse, from which on blocks that come to rest have not stood. They rest only if they lean on one
 # that they did not touch in the scene as built: their gap was more than a share of the smallest size.
 _SETTLED, _GAP = 0.01, 1e-7
+# Largest damage from which a joint counts as cracked, as in dem.damage().
+_CRACKED = 0.02
 
 
 def _direction_given(direction):
@@ -69,6 +72,11 @@ def _direction_given(direction):
 def _check_multiplier(multiplier):
     if multiplier > _MOST:
         raise ValueError(f"the blocks stand at any multiplier up to {_MOST:g}: they are held on all sides")
+
+
+def _cracked():
+    """How many joints with mortar have cracked."""
+    return np.count_nonzero(damage()["worst"] >= _CRACKED)
 
 
 class TiltTable:
@@ -105,6 +113,8 @@ class TiltTable:
         jammed      blocks moved, and stopped in joints that were closed as built: taken for collapse, since friction alone stops them
         unclear     blocks still moved, slowing down, when five times `hold` had passed: taken for collapse, and named in `doubts`
         missed      a step missed the contact laws: half the stair is tried, unless it is down to the tolerance
+    Blocks with mortar (BlockMat(mortar=), dem.wall(split=)) need method='wall' and one upright plane. Their joints are bonded under gravity alone and keep what a load that they stand has
+    cracked; Collapse.remarks says so.
     Steps that miss the contact laws are counted in the trials, without a warning; of each step it seeks one impact (mostEvents = 1), since what follows where
     blocks begin to move does not matter. Whether the multiplier can be trusted stands in Collapse.doubts.
     """
@@ -124,16 +134,13 @@ class TiltTable:
         self._free = [b for b in self._blocks if b.dynamic]
         if not self._free:
             raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.TiltTable()")
-        if units():
-            raise ValueError("the scene has units that may split (dem.wall(split=)): TiltTable knows dry joints only, and such joints need "
-                             "model='compliant': leave `split` out")
-        mortared = next((b.id for b in self._blocks if b.mat.mortar is not None), None)
-        if mortared is not None:
-            raise ValueError(f"O.bodies[{mortared}].mat has mortar: TiltTable knows dry joints only, and mortar needs model='compliant': leave the "
-                             "mortar out, or turn the gravity of compliant blocks (O.engines[-1].gravity) step by step")
         if tied():
             raise ValueError("the scene has ties (dem.tie), which stretch in a trial and stay broken in the next: TiltTable knows none. Take them away "
                              "(tie.dead = True), or pull the scene by a dem.record_motion() whose acceleration grows slowly")
+        before = joint_engine()
+        if getattr(before, "bondsAsked", None) or O.iter > 0 and getattr(before, "bondedIds", None):
+            raise ValueError("O.engines have joints that have been bonded in this run: TiltTable makes engines of its own, and begins with the mortar of "
+                             "BlockMat(mortar=) and of dem.wall(split=) before its first step")
         if model == "auto" and any(has_stiffness(b.mat) for b in self._blocks):
             raise ValueError("model = 'auto': must be 'planar' or 'spatial' where a BlockMat has a joint stiffness: TiltTable is for rigid blocks")
         self._start = [(b.state.pos, b.state.ori) for b in self._blocks]
@@ -164,7 +171,7 @@ class TiltTable:
             raise ValueError(f"tolerance = {tolerance}: must be above 0 and below 1")
         if not 0 < number_given("lower", lower) < _MOST:
             raise ValueError(f"lower = {lower}: must be above 0 and below {_MOST}")
-        trials, rest, mechanism = [], None, None
+        trials, rest, mechanism, cracked = [], None, None, []
 
         def hold(multiplier, **ends):
             nonlocal rest, mechanism
@@ -172,6 +179,8 @@ class TiltTable:
             verdict = trials[-1].verdict
             if verdict == "rest":
                 rest = self._keep(integrator)
+                if count := _cracked():
+                    cracked.append((multiplier, count))
             elif rest:
                 mechanism = self._mechanism()
                 self._go_back(integrator, rest)
@@ -202,7 +211,7 @@ class TiltTable:
                     low, high, careful = high, math.inf, True
                 else:
                     sure = True
-        return self._collapse((low + high) / 2, (low, high), trials, mechanism)
+        return self._collapse((low + high) / 2, (low, high), trials, mechanism, cracked)
 
     def ramp(self, rate=0.02, start=0.0, progress=None):
         """The Collapse of a multiplier that grows slowly. rate: per sqrt(height / gravity) of the scene. The bracket is from where the
@@ -357,7 +366,7 @@ class TiltTable:
     def _mechanism(self):
         return Mechanism(self._blocks, self._start, self._joints, 1 if abs(self._towards[1]) > abs(self._towards[0]) else 0)
 
-    def _collapse(self, multiplier, bracket, trials, mechanism):
+    def _collapse(self, multiplier, bracket, trials, mechanism, cracked=()):
         failures = sum(t.failures for t in trials if t.multiplier in bracket)
         other = "localised" if self._method == "wall" else "wall"
         doubts = [f"the integrator missed its tolerance or left out impacts in {failures} steps of the trials that decide: compare with "
@@ -365,14 +374,14 @@ class TiltTable:
         unclear = [f"{t.multiplier:.5g}" for t in trials if t.verdict == "unclear"]
         if unclear:
             doubts.append(f"blocks still moved, slowing down, when the trials of {', '.join(unclear)} were ended; taken for collapse: a larger hold decides them")
-        return Collapse(multiplier, bracket, trials, mechanism.joints(), mechanism.moving(), doubts, self._remarks(trials, bracket), mechanism,
+        return Collapse(multiplier, bracket, trials, mechanism.joints(), mechanism.moving(), doubts, self._remarks(trials, bracket, cracked), mechanism,
                         self._about())
 
     def _about(self):
         direction = self.direction if isinstance(self.direction, str) else f"({self._towards[0]:.4g}, {self._towards[1]:.4g})"
         return {**about([b.id for b in self._blocks], []), "pull": f"towards {direction}, {'a body force' if self.load == 'force' else 'by gravity that turns'}"}
 
-    def _remarks(self, trials, bracket):
+    def _remarks(self, trials, bracket, cracked):
         moved = [t for t in trials if t.verdict == "rest" and t.moved > self._settled()]
         jammed = [t for t in trials if t.verdict == "jammed" and t.multiplier in bracket]
         remarks = []
@@ -381,4 +390,6 @@ class TiltTable:
                            f"against others that they did not touch: less than {1e3 * self.share * self._size:.2g} mm (share) is no collapse")
         if jammed:
             remarks.append(f"at {jammed[-1].multiplier:.5g} blocks move by {1e3 * jammed[-1].moved:.2g} mm and jam in joints that were closed before: taken for collapse")
+        if cracked:
+            remarks.append(f"below it, from {cracked[0][0]:.5g} on, joints have cracked and the blocks stand: {cracked[-1][1]} at {cracked[-1][0]:.5g}")
         return remarks
