@@ -1,7 +1,7 @@
 #include "MoreauJeanIntegrator.hpp"
 #include "BaseMotionEngine.hpp"
 #include "BlockTie.hpp"
-#include "impact_lists.hpp"
+#include "joint_engines.hpp"
 #include "python_lock.hpp"
 #include "rigid_scene.hpp"
 #include "sentence.hpp"
@@ -20,13 +20,9 @@ void MoreauJeanIntegrator::postLoad(MoreauJeanIntegrator&)
 	for (const auto& motion : motions)
 		if (!dynamic_cast<BaseMotionEngine*>(motion.get()))
 			reject(*this, "motions", motion ? motion->getClassName() : "None", "a list of motions (PulseTrainEngine, RecordMotionEngine)");
-	for (const auto& tie : ties)
-		if (!dynamic_cast<BlockTie*>(tie.get()))
-			reject(*this, "ties", tie ? tie->getClassName() : "None", "a list of ties (BlockTie)");
+	checkOrderAndTies(*this);
 	if (model != "auto" && model != "planar" && model != "spatial")
 		reject(*this, "model", "'" + model + "'", "'auto', 'planar' or 'spatial'");
-	if (impactOrder != "simultaneous" && impactOrder != "sequential")
-		reject(*this, "impactOrder", "'" + impactOrder + "'", "'simultaneous' or 'sequential'");
 	if (onTrouble != "stop" && onTrouble != "continue" && onTrouble != "count")
 		reject(*this, "onTrouble", "'" + onTrouble + "'", "'stop', 'continue' or 'count'");
 	if (method != "localised" && method != "wall")
@@ -51,15 +47,6 @@ vector<shared_ptr<Engine>> MoreauJeanIntegrator::livingMotions() const
 {
 	vector<shared_ptr<Engine>> result;
 	std::copy_if(motions.begin(), motions.end(), std::back_inserter(result), [](const auto& motion) { return !motion->dead; });
-	return result;
-}
-
-vector<shared_ptr<BlockTie>> MoreauJeanIntegrator::livingTies() const
-{
-	vector<shared_ptr<BlockTie>> result;
-	for (const auto& tie : ties)
-		if (!tie->dead)
-			result.push_back(boost::static_pointer_cast<BlockTie>(tie));
 	return result;
 }
 
@@ -140,7 +127,7 @@ void MoreauJeanIntegrator::goOnFrom(const vector<Real>& values)
 bool MoreauJeanIntegrator::outdated() const
 {
 	const auto goesOn = [](const auto& motion) { return static_cast<const BaseMotionEngine&>(*motion).goesOn(); };
-	return livingMotions() != taken || livingTies() != takenTies || !std::all_of(taken.begin(), taken.end(), goesOn) ||
+	return livingMotions() != taken || livingTiesOf(ties) != takenTies || !std::all_of(taken.begin(), taken.end(), goesOn) ||
 	       sceneOf(memory).outdated();
 }
 
@@ -159,7 +146,7 @@ std::shared_ptr<RigidRun> MoreauJeanIntegrator::makeScene(const vector<Real>& va
 	const auto from = [this](const Remembered<K>& before) {
 		return std::make_shared<RigidScene<K>>(*scene, along, settings(),
 		                                       RigidEnergies {frictDissip, impactDissip, dampDissip, crackDissip, baseWork, potentialShift},
-		                                       pairLaw, warned, motionEngines(), livingTies(), before);
+		                                       pairLaw, warned, motionEngines(), livingTiesOf(ties), before);
 	};
 	if (values.empty())
 		return from({});
@@ -176,7 +163,7 @@ std::shared_ptr<RigidRun> MoreauJeanIntegrator::makeScene(const vector<Real>& va
 		throw std::runtime_error(
 		    "MoreauJeanIntegrator.remembered is of a run in the plane and this one is in space, or the other way round.");
 	readMemory([&] { archive(before); });
-	if (!takenTies.empty() && takenTies != livingTies()) // then each knows its own state
+	if (!takenTies.empty() && takenTies != livingTiesOf(ties)) // then each knows its own state
 		before.ties.clear();
 	const auto result = from(before);
 	result->unpackStepper(archive, before);
@@ -197,7 +184,7 @@ void MoreauJeanIntegrator::build(const vector<Real>& remembered)
 		if (std::find(living.begin(), living.end(), motion) == living.end())
 			static_cast<BaseMotionEngine&>(*motion).forget();
 	taken = living;
-	takenTies = livingTies();
+	takenTies = livingTiesOf(ties);
 }
 
 // --- the step ---
@@ -346,22 +333,14 @@ Real MoreauJeanIntegrator::potential()
 Real MoreauJeanIntegrator::elastPotential() const
 {
 	Real sum = 0;
-	for (const auto& tie : livingTies())
+	for (const auto& tie : livingTiesOf(ties))
 		sum += std::isnan(tie->energy) ? 0 : tie->energy;
 	return sum;
 }
 
 void MoreauJeanIntegrator::showEnergy()
 {
-	const std::pair<const char*, Real> keys[] = {{"kinetic", kinetic()},
-	                                             {"potential", potential()},
-	                                             {"frictDissip", frictDissip},
-	                                             {"impactDissip", impactDissip},
-	                                             {"baseWork", -baseWork}};
-	for (const auto& [key, value] : keys)
-		scene->energy->setItem_py(key, value);
-	if (!bondedIds.empty())
-		scene->energy->setItem_py("crackDissip", crackDissip);
+	showEnergies(*scene, *this, {{"kinetic", kinetic()}, {"potential", potential()}});
 	if (ties.empty())
 		return;
 	scene->energy->setItem_py("elastPotential", elastPotential());

@@ -146,7 +146,6 @@ private:
 	void showEnergy();
 	vector<shared_ptr<Engine>> livingMotions() const; // those that are not dead
 	vector<BaseMotionEngine*> motionEngines() const;  // the same
-	vector<shared_ptr<BlockTie>> livingTies() const;
 	vector<const Body*> blocks() const;
 	bool hasMortar() const; // a block has it
 	void checkMortar(const Choice& choice) const;

@@ -2,8 +2,8 @@
 #include "BlockGeom.hpp"
 #include "BlockPhys.hpp"
 #include "core_state.hpp"
-#include "impact_lists.hpp"
 #include "integrator_settings.hpp"
+#include "joint_engines.hpp"
 #include "sentence.hpp"
 #include "tie_attributes.hpp"
 
@@ -16,14 +16,7 @@ namespace yade {
 
 YADE_PLUGIN((RockingJointEngine));
 
-void RockingJointEngine::postLoad(RockingJointEngine&)
-{
-	if (impactOrder != "simultaneous" && impactOrder != "sequential")
-		reject(*this, "impactOrder", "'" + impactOrder + "'", "'simultaneous' or 'sequential'");
-	for (const auto& tie : ties)
-		if (!dynamic_cast<BlockTie*>(tie.get()))
-			reject(*this, "ties", tie ? tie->getClassName() : "None", "a list of ties (BlockTie)");
-}
+void RockingJointEngine::postLoad(RockingJointEngine&) { checkOrderAndTies(*this); }
 
 /// In another scene than so far, where a script has put this engine, or saved it before its first step, all results are forgotten.
 void RockingJointEngine::enterScene()
@@ -74,10 +67,7 @@ void RockingJointEngine::readScene()
 void RockingJointEngine::readBlocks()
 {
 	blocks.read(*scene, dampingRatio, step);
-	livingTies.clear();
-	for (const auto& tie : ties)
-		if (!tie->dead)
-			livingTies.push_back(boost::static_pointer_cast<BlockTie>(tie));
+	livingTies = livingTiesOf(ties);
 	blocks.readTies(*scene, livingTies, step.system);
 }
 
@@ -125,20 +115,17 @@ vector<masonry::BaseJump> RockingJointEngine::jumpsOf(const vector<BaseMotionEng
 
 Real RockingJointEngine::criticalTimeStep()
 {
-	const auto contacts = presentContacts();
-	return masonry::criticalTimeStep(step.system.bodies, contacts, step.system.ties);
+	return masonry::criticalTimeStep(step.system.bodies, presentContacts(), step.system.ties);
 }
 
 Real RockingJointEngine::largestTimeStep()
 {
-	const auto contacts = presentContacts();
-	return masonry::largestTimeStep(step.system.bodies, contacts, step.system.ties);
+	return masonry::largestTimeStep(step.system.bodies, presentContacts(), step.system.ties);
 }
 
 Real RockingJointEngine::chosenTimeStep()
 {
-	const auto contacts = presentContacts();
-	return masonry::chosenTimeStep(step.system.bodies, contacts, step.system.ties, stepFraction);
+	return masonry::chosenTimeStep(step.system.bodies, presentContacts(), step.system.ties, stepFraction);
 }
 
 vector<masonry::JointContact> RockingJointEngine::presentContacts()
@@ -240,17 +227,8 @@ void RockingJointEngine::writeEnergies()
 	if (!std::isfinite(kinetic + potential + elastPotential))
 		throw std::runtime_error(sentence("The simulation has diverged at t = ", scene->time, " s (kinetic energy ", kinetic,
 		                                  " J): give dem.engines() a smaller dt, or look for blocks that overlap (dem.check_blocks())."));
-	if (!scene->trackEnergy)
-		return;
-	const std::pair<const char*, Real> keys[] = {{"elastPotential", elastPotential},
-	                                             {"frictDissip", frictDissip},
-	                                             {"dampDissip", dampDissip},
-	                                             {"impactDissip", impactDissip},
-	                                             {"baseWork", -baseWork}};
-	for (const auto& [key, value] : keys)
-		scene->energy->setItem_py(key, value);
-	if (!bondedIds.empty())
-		scene->energy->setItem_py("crackDissip", crackDissip);
+	if (scene->trackEnergy)
+		showEnergies(*scene, *this, {{"elastPotential", elastPotential}, {"dampDissip", dampDissip}});
 }
 
 void RockingJointEngine::warn(const masonry::CompliantReport& report)

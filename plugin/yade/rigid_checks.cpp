@@ -6,6 +6,7 @@
 #include "PulseTrainEngine.hpp"
 #include "RockingJointEngine.hpp"
 #include "checked_body.hpp"
+#include "joint_engines.hpp"
 #include "python_lock.hpp"
 #include "rigid_scene.hpp"
 
@@ -69,7 +70,7 @@ void MoreauJeanIntegrator::checkBlocks(const Choice& choice) const
 			    sentence("O.bodies[", body->id, "].state.blockedDOFs = '", body->state->blockedDOFs_vec_get(),
 			             "' is not allowed for a rigid block: all six degrees of freedom are blocked ('xyzXYZ') or none."));
 	}
-	for (const auto& tie : livingTies())
+	for (const auto& tie : livingTiesOf(ties))
 		tie->check(*scene);
 	if (!free)
 		throw std::invalid_argument("There is no free block in O.bodies: add one with dem.block().");
@@ -184,7 +185,7 @@ void MoreauJeanIntegrator::checkPlane(const Vector3r& horizontal) const
 		}
 	for (const BaseMotionEngine* motion : motionEngines())
 		plane.direction(motion->direction);
-	for (const auto& tie : livingTies())
+	for (const auto& tie : livingTiesOf(ties))
 		checkPlane(*tie, normal, depth);
 	addUp(scene->forces, (*first)->id);
 	for (const Body* body : all)

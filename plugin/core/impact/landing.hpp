@@ -12,7 +12,7 @@
 // supports in one half of the edge, the one that rises fastest counts as that of its end, and of several closing points the one that would
 // touch first: the smallest e.w_carry, with which the block enters no support. The approach of that P is u_n-(P) = -L e.w-,
 // w = w_block - w_carry. A wall takes the points that are farthest apart instead, whatever their supports do: the ends of the edge, and the
-// closing point that its caller names first. Its accuracy was measured with these.
+// closing point that its caller names first. Neither is better there: docs/tuning.md, impacts.
 //
 // Axis. The old support is an edge: e is its direction. It is a corner O: e = n x d, where d sums over the closing points their approach
 // speed times their lever from O in the plane of the joint, so that for one closing point P the old support leaves with C times the speed

@@ -146,7 +146,7 @@ template bool SmoothStep<Plane>::holdTies(const RigidSystem<Plane>&, double);
 template bool SmoothStep<Space>::holdTies(const RigidSystem<Space>&, double);
 template void SmoothStep<Plane>::bookTies(RigidSystem<Plane>&);
 template void SmoothStep<Space>::bookTies(RigidSystem<Space>&);
-template void SmoothStep<Plane>::takeTies(const RigidSystem<Plane>&) const;
-template void SmoothStep<Space>::takeTies(const RigidSystem<Space>&) const;
+template void SmoothStep<Plane>::takeTies(RigidSystem<Plane>&) const;
+template void SmoothStep<Space>::takeTies(RigidSystem<Space>&) const;
 
 } // namespace masonry::localised
