@@ -160,25 +160,22 @@ class Rolling:
         self.body = O.bodies[dem.prism(polygon.tolist(), 2 * radius, stone(), axis="y", center=(0, 0, radius))]
         forward = Quaternion(Vector3.UnitY, past)  # about the corner below, which is at the origin
         self.body.state.pos, self.body.state.ori = forward * self.body.state.pos, forward * self.body.state.ori
-        self.n, self.radius, self.rolls = n, radius, False
+        self.n, self.radius, self.rolls, self.vertices = n, radius, False, list(self.body.shape.vertices)
         self.inertia, self.apothem = radius**2 * (regular(n) + 1), radius * math.cos(math.pi / n)
         arm = self.body.state.pos
         self.body.state.angVel, self.body.state.vel = Vector3(0, spin, 0), Vector3(0, spin, 0).cross(arm)
         self.engine = start_rolling(mode)
         self.engine.gravity = G * Vector3(math.sin(slope), 0, -math.cos(slope))
 
-    def _corners(self):
-        return np.array([self.body.state.pos + self.body.state.ori * v for v in self.body.shape.vertices])
-
     def _pivot(self):
         """The corner about which it turns: the foremost of those that lie on the ground, or deeper in it where springs or a solver give way."""
-        corners = self._corners()
+        corners = np.array([self.body.state.pos + self.body.state.ori * v for v in self.vertices])
         low = corners[:, 2] < corners[:, 2].min() + 0.01 * self.radius * math.sin(math.pi / self.n)
-        return np.where(low, corners[:, 0], -math.inf).argmax()
+        return self.vertices[np.where(low, corners[:, 0], -math.inf).argmax()]
 
     def _flat(self, pivot, side):
         """Potential energy per mass where the block lies on the side ahead (1) of a corner on which it stands, or behind it (-1)."""
-        corner = self._corners()[pivot]
+        corner = self.body.state.pos + self.body.state.ori * pivot
         return -self.engine.gravity.dot(Vector3(corner[0] + side * self.radius * math.sin(math.pi / self.n), 0, self.apothem))
 
     def landing(self):
