@@ -22,6 +22,7 @@ GALLERY = ROOT / "docs/gallery"
 SCRIPTS = {
     "arch": ("yade", ("thrust.png", "arch.png", "arch.gif")),
     "building": ("yade", ("building.png",)),
+    "chapel": ("yade", ("chapel.png",)),
     "collapse": ("yade", ("collapse.gif", "joints.png", "energy.png", "report.png")),
     "convex_blocks": ("yade", ("convex_blocks.png",)),
     "cracks": ("yade", ("cracks.png",)),

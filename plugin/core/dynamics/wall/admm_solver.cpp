@@ -312,9 +312,17 @@ SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& se
 		const bool isLagging = !atRest && status.iterations < settings.least;
 		return isLagging ? settings.early * tolerated : tolerated;
 	};
-	const int most = step.instant                    ? settings.maxOfInstant
-	                 : cold || settings.strictForces ? settings.first
-	                                                 : int(std::min(iterations + saved, 10 * iterations));
+	// Residual, relative to the speed that gravity gives in a step, above which a step takes up to ten times as many iterations. Larger:
+	// stuck blocks that snap under a load are thrown; smaller: walls that are shaken cost more (docs/tuning.md).
+	constexpr double rough = 0.3;
+	const int longest = int(10 * iterations);
+	const auto most = [&] {
+		if (step.instant)
+			return settings.maxOfInstant;
+		if (cold || settings.strictForces)
+			return settings.first;
+		return status.residual > rough * step.fall ? longest : std::min(int(iterations + saved), longest);
+	};
 	constexpr double diverging = 10;
 	constexpr int untilLoaded = 100;          // iterations of a cold start, after which R follows the loads that they have found
 	constexpr int looks[] {20, 50, 300, 600}; // the same of an instant (docs/tuning.md, impacts)
@@ -336,7 +344,7 @@ SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& se
 			least = status.residual;
 		}
 		least = std::min(least, status.residual);
-	} while (status.residual > enough() && status.iterations < most);
+	} while (status.residual > enough() && status.iterations < most());
 	if (!step.instant) {
 		saved = cold ? 0 : std::clamp(saved + iterations - status.iterations, 0., settings.reserve * iterations);
 		cold = false;
