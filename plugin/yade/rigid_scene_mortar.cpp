@@ -149,6 +149,10 @@ void RigidScene<Plane>::bond()
 			                            " has mortar on two faces: method='wall' bonds one face of a pair; take model='compliant'.");
 		contacts.setFriction(c, law.friction);
 	}
+	if (!bonds && system.mortar.empty()) { // a structure of few blocks has been stepped by its impacts until now: the walls begin
+		showPoints();
+		byWalls = false;
+	}
 	for (const masonry::MortarJoint<Plane>& old : system.mortar)
 		if (!bonds)
 			made.emplace(std::pair(old.body1, old.body2), old);

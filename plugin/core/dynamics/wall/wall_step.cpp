@@ -9,6 +9,20 @@
 
 namespace masonry::wall {
 
+namespace {
+
+// What all joints with mortar can bear, N.
+template <class K>
+double strengthOf(const RigidSystem<K>& s)
+{
+	double sum = 0;
+	for (const MortarJoint<K>& joint : s.mortar)
+		sum += joint.isBroken() ? 0 : joint.area * (joint.law.tensileStrength + joint.law.cohesion);
+	return sum;
+}
+
+} // namespace
+
 template <class K>
 StepReport WallStep<K>::advance(RigidSystem<K>& s, double dt)
 {
@@ -97,7 +111,7 @@ CappedStatus WallStep<K>::solveStep(RigidSystem<K>& s, const StepContext& step)
 {
 	const LaneArray& expected = guess.changeIn(step.h);
 	pulses.move(s, contacts, step.h);
-	contacts.limitMoved(s, step.fall + externalForce(s) * step.h / freeMass(s));
+	contacts.limitMoved(s, step.fall + (externalForce(s) + strengthOf(s)) * step.h / freeMass(s));
 	ledger.open(s, contacts.bodies(), pulses.halfBack());
 	contacts.bodies().takeForces(s.bodies, step.h, loads);
 	const std::vector<SpinRow<K>> rows = events.find(s, contacts, expected, step);

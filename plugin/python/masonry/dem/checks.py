@@ -78,10 +78,12 @@ def check_use_of_mortar(blocks, model, rigid):
 def _check_gaps(blocks):
     """ValueError where blocks with mortar lie above each other and do not touch. Gaps above half of the smallest size of the two are openings."""
     pairs, gaps, margins, supports = contacts_of(blocks, _OPENING)
-    wide = {tuple(pair): gap for pair, gap, margin in zip(pairs.tolist(), gaps.tolist(), margins.tolist()) if gap > TOUCH / _OPENING * margin}
+    wide = {}
+    for pair, gap, margin in sorted(zip(map(tuple, pairs.tolist()), gaps.tolist(), margins.tolist()), key=lambda row: -row[1]):
+        wide[pair] = gap if gap > TOUCH / _OPENING * margin else 0.0  # last that of the nearest convex parts
     for pair in map(tuple, np.sort(supports, axis=1).tolist()):
         one, other = (blocks[k] for k in pair)
-        if pair in wide and one.mat.mortar and other.mat.mortar and (one.dynamic or other.dynamic):
+        if wide.get(pair) and one.mat.mortar and other.mat.mortar and (one.dynamic or other.dynamic):
             raise ValueError(f"bodies {one.id} and {other.id} have mortar and a gap of {wide[pair]:.3g} m: blocks with mortar must touch; the mortar's thickness belongs to their "
                              "sizes, half a joint to either")
 
