@@ -150,7 +150,6 @@ private:
 	bool hasMortar() const; // a block has it
 	void checkMortar(const Choice& choice) const;
 
-
 	vector<shared_ptr<Engine>> taken; // motions that the run has taken over
 	vector<shared_ptr<BlockTie>> takenTies;
 	Real checkedTimeStep = NaN;
