@@ -199,7 +199,7 @@ def a20_keystone():
     for degrees, *given in ((20, 0.3, 1, 1), (15, 0.0, 1, 4)):
         right = keystone(math.radians(degrees), given[0], 0.5, *given[1:])
         made += rows("a20", lambda mode, d=degrees, given=given: least(mode, math.radians(d), *given),
-                     [(f"keystone, half angle {degrees} deg, mu {given[0]}: push that starts it, weights", right, (5e-3, 5e-3, 1e-2))])
+                     [(f"keystone, half angle {degrees} deg, mu {given[0]}: push that starts it, weights", right, (5e-3, 5e-3))])
     return made
 
 
