@@ -16,6 +16,7 @@ struct AdvancePass {
 	Group<K>* groups;
 	GroupState<K>* states;
 	const GroupResult<K>* results;
+	const Strength<K>* strength; // nullptr: none
 	int begin, end;
 	const Lanes* before;
 	double h, level;
@@ -25,7 +26,7 @@ struct AdvancePass {
 template <class K>
 MASONRY_INLINE void advanceGroups(const AdvancePass<K>& pass, Ended& ended)
 {
-	const auto [groups, states, results, begin, end, before, h, level, reached, moving] = pass;
+	const auto [groups, states, results, strength, begin, end, before, h, level, reached, moving] = pass;
 	for (int g = begin; g < end; ++g) {
 		const Mask rough = groups[g].friction >= maxFriction;
 		Mask in {}, moves {};
@@ -36,7 +37,8 @@ MASONRY_INLINE void advanceGroups(const AdvancePass<K>& pass, Ended& ended)
 			at.gap += h * row.un;
 			p.zero = p.pn < groups[g].most ? p.zero : smaller(p.zero, at.gap);
 			const Mask glides = slides(p.pt, groups[g].friction * (rough ? p.pn : row.bound));
-			p.slip = select(glides, typename PointState<K>::Tangent {}, p.slip + h * row.ut);
+			const Mask isSound = strength ? strength[g].pull[k] > 0 : Mask {}; // the slip at which it yields may take many steps
+			p.slip = select(glides & ~isSound, typename PointState<K>::Tangent {}, p.slip + h * row.ut);
 			if (const Mask slid = glides & (p.pn > 0); any(slid)) {
 				const Bodies<K> v1(before, groups[g].body1), v2(before, groups[g].body2);
 				const Lanes loss = -0.5 * dot(row.actedT, slipRate(v1, v2, at) + row.ut);
@@ -89,8 +91,9 @@ PointsReport ContactPoints<K>::advance(const AdmmResults<K>& results, const Lane
 	result.reached.resize(groups_.size());
 	result.moving.resize(groups_.size());
 	layout.allParts([&](const Part& part, int number) {
-		const AdvancePass<K> pass {groups_.data(), states_.data(),        results.points.data(), part.begin, part.end, before.data(), h,
-		                           level,          result.reached.data(), result.moving.data()};
+		const AdvancePass<K> pass {
+		    groups_.data(), states_.data(),        results.points.data(), firstOf(results.strength), part.begin, part.end, before.data(), h,
+		    level,          result.reached.data(), result.moving.data()};
 		advancePass(pass, ended[number]);
 	});
 	for (const Ended& here : ended) {
