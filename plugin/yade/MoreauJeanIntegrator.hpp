@@ -144,7 +144,7 @@ private:
 	vector<shared_ptr<BlockTie>> livingTies() const;
 	vector<const Body*> blocks() const;
 	bool hasMortar() const; // a block has it
-	void checkMortar(const Choice& choice) const;
+	void checkMortar() const;
 
 	vector<shared_ptr<Engine>> taken; // motions that the run has taken over
 	vector<shared_ptr<BlockTie>> takenTies;

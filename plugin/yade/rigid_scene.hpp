@@ -154,6 +154,7 @@ private:
 
 	void addMortar(const Remembered<K>& before, const vector<int>& inBefore);
 	void bond();
+	masonry::MortarJoint<K> jointOf(const Pair& pair, const masonry::MortarLaw& law) const;
 	void checkLawsOfMortar() const;
 
 	void forgetNeighbours();
@@ -234,12 +235,8 @@ private:
 };
 
 template <>
-void RigidScene<Plane>::bond();
+masonry::MortarJoint<Plane> RigidScene<Plane>::jointOf(const Pair& pair, const masonry::MortarLaw& law) const;
 template <>
-void RigidScene<Space>::bond();
-template <>
-void RigidScene<Plane>::showMortar();
-template <>
-void RigidScene<Space>::showMortar();
+masonry::MortarJoint<Space> RigidScene<Space>::jointOf(const Pair& pair, const masonry::MortarLaw& law) const;
 
 } // namespace yade

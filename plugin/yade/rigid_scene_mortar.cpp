@@ -1,8 +1,7 @@
-// Mortar of a scene with method='wall' in the plane: which joints it bonds, what is left of it, and its forces.
+// Mortar of a scene with method='wall': which joints it bonds, what is left of it, and its forces.
 
 #include "rigid_scene.hpp"
 
-#include "impact/impulse_problem.hpp" // axesAlong
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -54,39 +53,42 @@ void RigidScene<K>::addMortar(const Remembered<K>& before, const vector<int>& in
 		if (std::max(joint.body1, joint.body2) < int(links.size()))
 			system.mortar.push_back(joint);
 	}
+	std::sort(system.mortar.begin(), system.mortar.end(),
+	          [](const auto& a, const auto& b) { return std::pair(a.body1, a.body2) < std::pair(b.body1, b.body2); });
 	bonds = before.ids.empty();
 }
 
-/// Joints of blocks that touch and both have the same mortar. MoreauJeanIntegrator::checkBlocks lets no mortar come to space.
 template <>
-void RigidScene<Space>::bond()
+masonry::MortarJoint<Space> RigidScene<Space>::jointOf(const Pair& pair, const masonry::MortarLaw& law) const
 {
+	return masonry::wall::mortarJoint(system, pair, law);
 }
 
 template <>
-void RigidScene<Plane>::bond()
+masonry::MortarJoint<Plane> RigidScene<Plane>::jointOf(const Pair& pair, const masonry::MortarLaw& law) const
+{
+	const auto depthOf = [&](int b) { return 2 * links[b].properties.shape.reach(links[b].state->ori.conjugate() * coordinates.normal); };
+	return masonry::wall::mortarJoint(system, pair, law, std::min(depthOf(pair.body1), depthOf(pair.body2)));
+}
+
+/// Joints of blocks that touch and both have the same mortar.
+template <class K>
+void RigidScene<K>::bond()
 {
 	system.mortar.clear();
 	for (size_t c = 0; c < system.pairs.size(); ++c) {
 		const Pair& pair = system.pairs[c];
 		const shared_ptr<JointMat>& mortar = contacts.law(c).mortar;
-		if (!mortar || pair.size() != 2)
+		if (!mortar || pair.size() < K::dimension)
 			continue;
 		const int id1 = kept.ids[pair.body1], id2 = kept.ids[pair.body2];
-		const Properties &one = links[pair.body1].properties, &other = links[pair.body2].properties;
-		const Real thickness = std::min(one.shape.thickness(), other.shape.thickness());
-		if (std::max(pair.points[0].gap, pair.points[1].gap) > closeBy * thickness)
+		const Real thickness = std::min(links[pair.body1].properties.shape.thickness(), links[pair.body2].properties.shape.thickness());
+		if (std::any_of(pair.points.begin(), pair.points.end(), [&](const auto& point) { return point.gap > closeBy * thickness; }))
 			continue;
-		const auto depthOf = [&](int b, const Properties& properties) {
-			return 2 * properties.shape.reach(links[b].state->ori.conjugate() * coordinates.normal);
-		};
-		const Real depth = std::min(depthOf(pair.body1, one), depthOf(pair.body2, other));
-		const masonry::MortarJoint<Plane> joint =
-		    masonry::wall::mortarJoint(system, pair, lawOf(*mortar, contacts.law(c).tangensOfFrictionAngle, id1, id2), depth);
-		if (!(joint.area > closeBy * thickness * depth))
+		const masonry::MortarJoint<K> joint = jointOf(pair, lawOf(*mortar, contacts.law(c).tangensOfFrictionAngle, id1, id2));
+		if (!(joint.area > closeBy * thickness * thickness))
 			continue;
-		const auto isSame = [&](const masonry::MortarJoint<Plane>& o) { return o.body1 == joint.body1 && o.body2 == joint.body2; };
-		if (std::any_of(system.mortar.begin(), system.mortar.end(), isSame))
+		if (masonry::mortarBetween(system.mortar, joint.body1, joint.body2))
 			throw std::invalid_argument(pairOf(id1, id2) +
 			                            " has mortar on two faces: method='wall' bonds one face of a pair; take model='compliant'.");
 		system.mortar.push_back(joint);
@@ -145,31 +147,30 @@ void RigidScene<K>::writeMortar(vector<int>& ids, vector<Real>& rows) const
 }
 
 /// Forces of cracking joints, beside those of the corners.
-template <>
-void RigidScene<Space>::showMortar()
+template <class K>
+void RigidScene<K>::showMortar()
 {
-}
-
-template <>
-void RigidScene<Plane>::showMortar()
-{
+	using Vector = typename K::Vector;
 	for (size_t c = 0; c < system.pairs.size() && !system.mortar.empty(); ++c) {
 		const Pair& pair = system.pairs[c];
-		const auto isOf = [&](const masonry::MortarJoint<Plane>& o) { return o.body1 == pair.body1 && o.body2 == pair.body2; };
-		const auto joint = std::find_if(system.mortar.begin(), system.mortar.end(), isOf);
-		if (joint == system.mortar.end())
+		const masonry::MortarJoint<K>* joint = masonry::mortarBetween(system.mortar, pair.body1, pair.body2);
+		if (!joint)
 			continue;
-		const auto &pose1 = system.bodies[pair.body1].pose, &pose2 = system.bodies[pair.body2].pose;
-		const Eigen::Matrix2d axes = masonry::axesAlong((pose1.rotate(joint->normal1) + pose2.rotate(joint->normal2)).normalized());
+		const auto& pose2 = system.bodies[pair.body2].pose;
+		const auto axes = masonry::axesOf(*joint, system.bodies[pair.body1].pose, pose2);
 		const Real depth = kept.seats[pair.body2].depth;
 		masonry::BondLoad load;
 		load.place = pointInScene(coordinates, pose2.position, depth);
 		for (const auto& point : joint->points) {
 			if (point.state.isBroken)
 				continue;
-			const Vector3r force = coordinates.out(masonry::Vector2(axes.transpose() * point.force));
-			load.force += force;
-			load.moment += (pointInScene(coordinates, pose2.toGlobal(point.place2), depth) - load.place).cross(force);
+			for (int row = 0; row < K::rows; ++row) { // shear acts beside the pull
+				const Vector along = axes.row(row).transpose() * point.force[row];
+				const Vector at = pose2.toGlobal(row == 0 ? point.place2 : Vector(point.place2 + point.grip2));
+				const Vector3r force = coordinates.out(along);
+				load.force += force;
+				load.moment += (pointInScene(coordinates, at, depth) - load.place).cross(force);
+			}
 		}
 		contacts.setLoad(c, load);
 	}
@@ -177,8 +178,12 @@ void RigidScene<Plane>::showMortar()
 
 template void RigidScene<Plane>::addMortar(const Remembered<Plane>&, const vector<int>&);
 template void RigidScene<Space>::addMortar(const Remembered<Space>&, const vector<int>&);
+template void RigidScene<Plane>::bond();
+template void RigidScene<Space>::bond();
 template void RigidScene<Plane>::checkLawsOfMortar() const;
 template void RigidScene<Space>::checkLawsOfMortar() const;
+template void RigidScene<Plane>::showMortar();
+template void RigidScene<Space>::showMortar();
 template void RigidScene<Plane>::writeMortar(vector<int>&, vector<Real>&) const;
 template void RigidScene<Space>::writeMortar(vector<int>&, vector<Real>&) const;
 
