@@ -295,6 +295,10 @@ RigidResults MoreauJeanIntegrator::stepRun()
 		if (model == "planar")
 			throw std::runtime_error(
 			    sentence("MoreauJeanIntegrator.model = 'planar', but ", obstacle.what(), " at t = ", scene->time, " s."));
+		if (!bondedIds.empty())
+			throw std::runtime_error(
+			    sentence("The scene is no longer planar at t = ", scene->time, " s: ", obstacle.what(),
+			             ". Its joints have mortar, whose damage is that of the plane: give it model = 'spatial' from the start."));
 		LOG_WARN("the scene is no longer planar at t = " << scene->time << " s: " << obstacle.what() << "; it goes on in space.");
 		chosenModel = "spatial";
 		reason = obstacle.what();

@@ -148,7 +148,7 @@ private:
 	vector<BaseMotionEngine*> motionEngines() const;  // the same
 	vector<const Body*> blocks() const;
 	bool hasMortar() const; // a block has it
-	void checkMortar(const Choice& choice) const;
+	void checkMortar() const;
 
 	vector<shared_ptr<Engine>> taken; // motions that the run has taken over
 	vector<shared_ptr<BlockTie>> takenTies;

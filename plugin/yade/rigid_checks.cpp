@@ -74,7 +74,7 @@ void MoreauJeanIntegrator::checkBlocks(const Choice& choice) const
 		tie->check(*scene);
 	if (!free)
 		throw std::invalid_argument("There is no free block in O.bodies: add one with dem.block().");
-	checkMortar(choice);
+	checkMortar();
 	for (const auto& body : scene->bodies->body)
 		if (body && dynamic_cast<BlockMat*>(body->material.get()) && !isBlock(*body))
 			throw std::invalid_argument(
@@ -93,7 +93,7 @@ bool MoreauJeanIntegrator::hasMortar() const
 	});
 }
 
-void MoreauJeanIntegrator::checkMortar(const Choice& choice) const
+void MoreauJeanIntegrator::checkMortar() const
 {
 	const string other = " or give the scene compliant joints (model='compliant').";
 	for (const Body* body : blocks()) {
@@ -101,10 +101,8 @@ void MoreauJeanIntegrator::checkMortar(const Choice& choice) const
 		if (!material || !material->mortar)
 			continue;
 		const string of = sentence("O.bodies[", body->id, "].mat.");
-		if (!(wall && choice.planar()))
-			throw std::invalid_argument(of +
-			                            "mortar is not allowed here: of rigid blocks, those of method='wall' in one upright plane "
-			                            "have it; leave it out," +
+		if (!wall)
+			throw std::invalid_argument(of + "mortar is not allowed here: of rigid blocks, those of method='wall' have it; leave it out," +
 			                            other);
 	}
 	for (const auto& motion : livingMotions())

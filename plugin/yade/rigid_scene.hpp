@@ -184,6 +184,7 @@ private:
 	bool isJoint(const Pair& pair) const;
 	masonry::MortarLaw askedLaw(const Real* row, size_t pair) const;
 	void bond();
+	masonry::MortarJoint<K> jointOf(const Pair& pair, const masonry::MortarLaw& law) const;
 	void checkLawsOfMortar() const;
 	void findRows(vector<int>& ids, vector<Real>& rows);
 
@@ -269,12 +270,8 @@ private:
 };
 
 template <>
-void RigidScene<Plane>::bond();
+masonry::MortarJoint<Plane> RigidScene<Plane>::jointOf(const Pair& pair, const masonry::MortarLaw& law) const;
 template <>
-void RigidScene<Space>::bond();
-template <>
-void RigidScene<Plane>::showMortar();
-template <>
-void RigidScene<Space>::showMortar();
+masonry::MortarJoint<Space> RigidScene<Space>::jointOf(const Pair& pair, const masonry::MortarLaw& law) const;
 
 } // namespace yade

@@ -1,8 +1,7 @@
-// Mortar of a scene with method='wall' in the plane: which joints it bonds, what is left of it, and its forces.
+// Mortar of a scene with method='wall': which joints it bonds, what is left of it, and its forces.
 
 #include "rigid_scene.hpp"
 
-#include "impact/impulse_problem.hpp" // axesAlong
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -44,16 +43,6 @@ masonry::MortarLaw lawOf(const JointMat& mortar, Real friction, int id1, int id2
 	return checked(mortar.law(infinite, infinite, NaN, id1, id2), friction, id1, id2);
 }
 
-/// The joint of two bodies in a list that is sorted by them, or its end.
-template <class Joints>
-auto jointOf(Joints& joints, const std::pair<int, int>& bodies)
-{
-	const auto at = std::lower_bound(joints.begin(), joints.end(), bodies, [](const auto& joint, const std::pair<int, int>& of) {
-		return std::pair(joint.body1, joint.body2) < of;
-	});
-	return at != joints.end() && std::pair(at->body1, at->body2) == bodies ? at : joints.end();
-}
-
 } // namespace
 
 void checkRigid(const JointMat& mortar, int id1, int id2)
@@ -76,13 +65,15 @@ void RigidScene<K>::addMortar(const Remembered<K>& before, const vector<int>& in
 		if (std::min(joint.body1, joint.body2) >= 0)
 			system.mortar.push_back(joint);
 	}
+	std::sort(system.mortar.begin(), system.mortar.end(),
+	          [](const auto& a, const auto& b) { return std::pair(a.body1, a.body2) < std::pair(b.body1, b.body2); });
 	bonds = before.ids.empty() || (settings.begins && before.mortar.empty());
 }
 
-/// Joints of blocks that touch and both have the same mortar. MoreauJeanIntegrator::checkBlocks lets no mortar come to space.
 template <>
-void RigidScene<Space>::bond()
+masonry::MortarJoint<Space> RigidScene<Space>::jointOf(const Pair& pair, const masonry::MortarLaw& law) const
 {
+	return masonry::wall::mortarJoint(system, pair, law);
 }
 
 /// Blocks touch along a face.
@@ -91,7 +82,7 @@ bool RigidScene<K>::isJoint(const Pair& pair) const
 {
 	const Real thickness = std::min(links[pair.body1].properties.shape.thickness(), links[pair.body2].properties.shape.thickness());
 	const auto isClosed = [&](const auto& point) { return point.gap <= closeBy * thickness; };
-	return pair.size() > 1 && std::all_of(pair.points.begin(), pair.points.end(), isClosed);
+	return pair.size() >= K::dimension && std::all_of(pair.points.begin(), pair.points.end(), isClosed);
 }
 
 template <class K>
@@ -121,12 +112,20 @@ masonry::MortarLaw RigidScene<K>::askedLaw(const Real* row, size_t c) const
 }
 
 template <>
-void RigidScene<Plane>::bond()
+masonry::MortarJoint<Plane> RigidScene<Plane>::jointOf(const Pair& pair, const masonry::MortarLaw& law) const
+{
+	const auto depthOf = [&](int b) { return 2 * links[b].properties.shape.reach(links[b].state->ori.conjugate() * coordinates.normal); };
+	return masonry::wall::mortarJoint(system, pair, law, std::min(depthOf(pair.body1), depthOf(pair.body2)));
+}
+
+/// Joints of blocks that touch and both have the same mortar.
+template <class K>
+void RigidScene<K>::bond()
 {
 	std::map<std::pair<int, int>, const Real*> rows; // the last one of a pair counts
 	for (size_t row = 0; row + sizeOfAskedBond <= asked.size(); row += sizeOfAskedBond)
 		rows[std::minmax(int(asked[row]), int(asked[row + 1]))] = &asked[row];
-	std::map<std::pair<int, int>, masonry::MortarJoint<Plane>> made;
+	std::map<std::pair<int, int>, masonry::MortarJoint<K>> made;
 	for (size_t c = 0; c < system.pairs.size(); ++c) {
 		const Pair& pair = system.pairs[c];
 		const int id1 = kept.ids[pair.body1], id2 = kept.ids[pair.body2];
@@ -134,15 +133,11 @@ void RigidScene<Plane>::bond()
 		const shared_ptr<JointMat>& mortar = contacts.law(c).mortar;
 		if (!(row != rows.end() || (bonds && mortar)) || !isJoint(pair))
 			continue;
-		const auto depthOf = [&](int b) {
-			return 2 * links[b].properties.shape.reach(links[b].state->ori.conjugate() * coordinates.normal);
-		};
-		const Real depth = std::min(depthOf(pair.body1), depthOf(pair.body2));
 		const masonry::MortarLaw law =
 		    row != rows.end() ? askedLaw(row->second, c) : lawOf(*mortar, contacts.law(c).tangensOfFrictionAngle, id1, id2);
-		const masonry::MortarJoint<Plane> joint = masonry::wall::mortarJoint(system, pair, law, depth);
+		const masonry::MortarJoint<K> joint = jointOf(pair, law);
 		const Real thickness = std::min(links[pair.body1].properties.shape.thickness(), links[pair.body2].properties.shape.thickness());
-		if (!(joint.area > closeBy * thickness * depth))
+		if (!(joint.area > closeBy * thickness * thickness))
 			continue;
 		if (!made.emplace(std::pair(joint.body1, joint.body2), joint).second)
 			throw std::invalid_argument(pairOf(id1, id2) +
@@ -153,7 +148,7 @@ void RigidScene<Plane>::bond()
 		showPoints();
 		byWalls = false;
 	}
-	for (const masonry::MortarJoint<Plane>& old : system.mortar)
+	for (const masonry::MortarJoint<K>& old : system.mortar)
 		if (!bonds)
 			made.emplace(std::pair(old.body1, old.body2), old);
 	system.mortar.clear();
@@ -235,30 +230,30 @@ void RigidScene<K>::writeMortar(vector<int>& ids, vector<Real>& rows)
 }
 
 /// Forces of cracking joints, beside those of the corners.
-template <>
-void RigidScene<Space>::showMortar()
+template <class K>
+void RigidScene<K>::showMortar()
 {
-}
-
-template <>
-void RigidScene<Plane>::showMortar()
-{
+	using Vector = typename K::Vector;
 	for (size_t c = 0; c < system.pairs.size() && !system.mortar.empty(); ++c) {
 		const Pair& pair = system.pairs[c];
-		const auto joint = jointOf(system.mortar, {pair.body1, pair.body2});
-		if (joint == system.mortar.end())
+		const masonry::MortarJoint<K>* joint = masonry::mortarBetween(system.mortar, pair.body1, pair.body2);
+		if (!joint)
 			continue;
-		const auto &pose1 = system.bodies[pair.body1].pose, &pose2 = system.bodies[pair.body2].pose;
-		const Eigen::Matrix2d axes = masonry::axesAlong((pose1.rotate(joint->normal1) + pose2.rotate(joint->normal2)).normalized());
+		const auto& pose2 = system.bodies[pair.body2].pose;
+		const auto axes = masonry::axesOf(*joint, system.bodies[pair.body1].pose, pose2);
 		const Real depth = kept.seats[pair.body2].depth;
 		masonry::BondLoad load;
 		load.place = pointInScene(coordinates, pose2.position, depth);
 		for (const auto& point : joint->points) {
 			if (point.state.isBroken)
 				continue;
-			const Vector3r force = coordinates.out(masonry::Vector2(axes.transpose() * point.force));
-			load.force += force;
-			load.moment += (pointInScene(coordinates, pose2.toGlobal(point.place2), depth) - load.place).cross(force);
+			for (int row = 0; row < K::rows; ++row) { // shear acts beside the pull
+				const Vector along = axes.row(row).transpose() * point.force[row];
+				const Vector at = pose2.toGlobal(row == 0 ? point.place2 : Vector(point.place2 + point.grip2));
+				const Vector3r force = coordinates.out(along);
+				load.force += force;
+				load.moment += (pointInScene(coordinates, at, depth) - load.place).cross(force);
+			}
 		}
 		contacts.setLoad(c, load);
 	}
@@ -266,8 +261,12 @@ void RigidScene<Plane>::showMortar()
 
 template void RigidScene<Plane>::addMortar(const Remembered<Plane>&, const vector<int>&);
 template void RigidScene<Space>::addMortar(const Remembered<Space>&, const vector<int>&);
+template void RigidScene<Plane>::bond();
+template void RigidScene<Space>::bond();
 template void RigidScene<Plane>::checkLawsOfMortar() const;
 template void RigidScene<Space>::checkLawsOfMortar() const;
+template void RigidScene<Plane>::showMortar();
+template void RigidScene<Space>::showMortar();
 template void RigidScene<Plane>::writeMortar(vector<int>&, vector<Real>&);
 template void RigidScene<Space>::writeMortar(vector<int>&, vector<Real>&);
 template vector<BlockJoint> RigidScene<Plane>::jointsInTouch();

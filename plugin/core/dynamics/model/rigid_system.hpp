@@ -190,7 +190,7 @@ struct RigidSystem {
 	std::vector<RigidBody<K>> bodies;
 	std::vector<ContactPair<K>> pairs;              // of blocks that are near each other, in a fixed order
 	std::vector<Tie<K>> ties;                       // in the scene's order
-	std::vector<MortarJoint<K>> mortar;             // joints that have been bonded
+	std::vector<MortarJoint<K>> mortar;             // joints that have been bonded, sorted by their bodies
 	Version list;                                   // of the list of pairs: which bodies they have, in which order
 	Version laws;                                   // of the pairs' friction and restitution, where the list stays
 	typename K::Vector gravity {K::Vector::Zero()}; // which way is down, and the scale of tolerances; the weight itself is in `force`

@@ -24,7 +24,7 @@ using GroupPenalty = std::array<Penalty, lanePoints<K>>;
 template <class K>
 struct Pass {
 	const Group<K>* groups;
-	const Strength* strength; // by group, of sound mortar; nullptr: none
+	const Strength<K>* strength; // by group, of sound mortar; nullptr: none
 	GroupState<K>* states;
 	GroupPenalty<K>* penalties;
 	GroupResult<K>* results;
@@ -33,6 +33,13 @@ struct Pass {
 	Lanes* force;
 	const Step& step;
 };
+
+// nullptr: no mortar.
+template <class K>
+MASONRY_INLINE const Lanes* pullOf(const Strength<K>* strength, int g, int k)
+{
+	return strength ? &strength[g].pull[k] : nullptr;
+}
 
 // R by load.
 template <class K>
@@ -43,12 +50,12 @@ MASONRY_INLINE Lanes resistanceOf(const PointLanes<K>& p, const Lanes& filteredI
 }
 // The same, where sound mortar holds some lanes.
 template <class K, bool bonded>
-MASONRY_INLINE Lanes resistanceOf(const PointLanes<K>& p, const Lanes& filteredImpulse, const Step& step, const Strength* strength, int g)
+MASONRY_INLINE Lanes resistanceOf(const PointLanes<K>& p, const Lanes& filteredImpulse, const Step& step, const Lanes* pull)
 {
 	if constexpr (!bonded)
 		return resistanceOf<K>(p, filteredImpulse, step);
 	else
-		return select(strength[g].pull > 0, all(0.5 * step.soundSoftness) * (p.massN + p.massT) / (p.massN * p.massT),
+		return select(*pull > 0, all(0.5 * step.soundSoftness) * (p.massN + p.massT) / (p.massN * p.massT),
 		              resistanceOf<K>(p, filteredImpulse, step));
 }
 
@@ -76,8 +83,8 @@ MASONRY_INLINE Outdated takeGroups(const Pass<K>& pass)
 			outdated.reached |= (at.massN > 0) & (at.gap + step.h * approach < needed * step.reach) & ~in;
 			if (step.compares)
 				outdated.loaded |= in & (at.massN > 0) &
-				                   (size(resistanceOf<K, bonded>(at, p.filteredImpulse, step, strength, g) - penalty.resistance) >
-				                    step.follows * penalty.resistance);
+				                   (size(resistanceOf<K, bonded>(at, p.filteredImpulse, step, pullOf(strength, g, k)) -
+				                         penalty.resistance) > step.follows * penalty.resistance);
 		}
 	}
 	return outdated;
@@ -94,7 +101,7 @@ MASONRY_INLINE void setPenalties(const Pass<K>& pass)
 			const PointLanes<K>& p = groups[g].point[k];
 			const Lanes approach = 2. * smaller(normalRate(v1, v2, p), none);
 			const Mask in = (p.massN > 0) & (p.gap + step.h * approach < step.reach) & (all(groups[g].count - k) > 0);
-			const Lanes resistance = in ? resistanceOf<K, bonded>(p, states[g][k].filteredImpulse, step, strength, g) : one;
+			const Lanes resistance = in ? resistanceOf<K, bonded>(p, states[g][k].filteredImpulse, step, pullOf(strength, g, k)) : one;
 			penalties[g][k] = {in ? resistance : none, in ? one / resistance : none};
 			results[g][k].inReach = in;
 		}
@@ -103,14 +110,14 @@ MASONRY_INLINE void setPenalties(const Pass<K>& pass)
 
 // The right-hand side of a solve; with `laws`, after the pass over the laws.
 template <class K, bool laws, bool bonded>
-MASONRY_INLINE void passGroup(const Group<K>& group, const Strength* strength, GroupState<K>& states, const GroupPenalty<K>& penalties,
+MASONRY_INLINE void passGroup(const Group<K>& group, const Strength<K>* strength, GroupState<K>& states, const GroupPenalty<K>& penalties,
                               GroupResult<K>& results, const Step& step, const Lanes* velocity, Lanes* force, Lanes& worst)
 {
 	const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
 	Bodies<K> f1(force, group.body1), f2(force, group.body2);
 	const Mask rough = group.friction >= maxFriction;
-	const Lanes pull = bonded ? strength->pull : all(0), shift = bonded ? strength->shift : all(0);
 	for (int k = 0; k < group.count; ++k) {
+		const Lanes pull = bonded ? strength->pull[k] : all(0), shift = bonded ? strength->shift[k] : all(0);
 		const PointLanes<K>& at = group.point[k];
 		PointState<K>& p = states[k];
 		const auto& [resistance, stiffness] = penalties[k];
@@ -172,17 +179,17 @@ MASONRY_INLINE void startGroups(const Pass<K>& pass)
 			p.pn = in ? p.pn : none;
 			p.pt = select(in, p.pt, typename PointLanes<K>::Tangent {});
 			if constexpr (bonded)
-				p.pn = larger(p.pn, -strength[g].pull);
+				p.pn = larger(p.pn, -strength[g].pull[k]);
 			p.zero = larger(p.zero, smaller(at.gap, none));
 			const Lanes deep = smaller(at.gap - p.zero + step.left, none);
 			row.bn = in ? step.perH * (at.gap > 0 ? at.gap : step.pullBack * deep) : none;
 			if constexpr (bonded)
-				row.bn = (strength[g].pull > 0) & (at.gap > 0) ? step.pullBack * row.bn : row.bn;
+				row.bn = (strength[g].pull[k] > 0) & (at.gap > 0) ? step.pullBack * row.bn : row.bn;
 			row.bt = select(in, all(step.pullBack * step.perH) * p.slip, typename PointLanes<K>::Tangent {});
-			row.bound = bonded ? p.pn + strength[g].shift : p.pn;
+			row.bound = bonded ? p.pn + strength[g].shift[k] : p.pn;
 			const Lanes wn = normalRate(v1, v2, at) + row.bn;
 			const auto wt = slipRate(v1, v2, at) + row.bt;
-			const Lanes least = bonded ? -strength[g].pull : none;
+			const Lanes least = bonded ? -strength[g].pull[k] : none;
 			p.zn = p.pn > least ? p.zn : larger(wn, none);
 			const Mask keeps = (p.pn > least) & ~slides(p.pt, almost * groups[g].friction * row.bound);
 			p.zt = select(keeps, p.zt, select(at.gap <= step.sticks, typename PointLanes<K>::Tangent {}, wt));

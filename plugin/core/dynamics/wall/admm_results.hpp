@@ -16,7 +16,7 @@ struct AdmmProblem {
 	const std::vector<SpinRow<K>>& rows; // prescribed spins
 	std::vector<TieRow<K>> ties {};
 	std::vector<MortarRow<K>> mortar {};
-	const Array<Strength>* strength {nullptr}; // by group, of sound mortar
+	const Array<Strength<K>>* strength {nullptr}; // by group, of sound mortar
 };
 
 template <class K>
@@ -36,12 +36,13 @@ using GroupResult = std::array<PointResult<K>, lanePoints<K>>;
 
 template <class K>
 struct AdmmResults {
-	LaneArray velocity;                 // V, in the packs of the contacts
-	PointStates<K> states;              // p and z
-	std::vector<GroupResult<K>> points; // by group of the contacts
-	std::vector<SpinRow<K>> spins;      // the rows of the problem with their couples
-	std::vector<TieRow<K>> ties;        // the same with their impulses
-	std::vector<MortarRow<K>> mortar;   // the same
+	LaneArray velocity;                           // V, in the packs of the contacts
+	PointStates<K> states;                        // p and z
+	std::vector<GroupResult<K>> points;           // by group of the contacts
+	std::vector<SpinRow<K>> spins;                // the rows of the problem with their couples
+	std::vector<TieRow<K>> ties;                  // the same with their impulses
+	std::vector<MortarRow<K>> mortar;             // the same
+	const Array<Strength<K>>* strength {nullptr}; // that of the problem
 };
 
 struct SolverStatus {

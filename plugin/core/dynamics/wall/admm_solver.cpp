@@ -69,7 +69,7 @@ Pass<K> AdmmSolver<K>::passOf(const Problem& problem, const Part& part, const St
 {
 	const LaneArray& velocity = results.velocity;
 	return {problem.contacts.points().groups().data(),
-	        problem.strength && !problem.strength->empty() ? problem.strength->data() : nullptr,
+	        firstOf(problem.strength),
 	        results.states.data(),
 	        penalties.data(),
 	        results.points.data(),
@@ -112,9 +112,12 @@ template <class K>
 bool AdmmSolver<K>::isMortarOutdated(const Problem& problem, const AdmmSettings& settings, Results& results) const
 {
 	constexpr double far = 4;
-	const auto isSame = [](const Strength& a, const Strength& b) { return bitsOf(a.pull > 0) == bitsOf(b.pull > 0); };
-	const Array<Strength> empty;
-	const Array<Strength>& sound = problem.strength ? *problem.strength : empty;
+	const auto isSame = [](const Strength<K>& a, const Strength<K>& b) {
+		return std::equal(a.pull.begin(), a.pull.end(), b.pull.begin(),
+		                  [](const Lanes& x, const Lanes& y) { return bitsOf(x > 0) == bitsOf(y > 0); });
+	};
+	const Array<Strength<K>> empty;
+	const Array<Strength<K>>& sound = problem.strength ? *problem.strength : empty;
 	if (!std::equal(sound.begin(), sound.end(), soundInA.begin(), soundInA.end(), isSame))
 		return true;
 	const auto isSameRow = [](const MortarRow<K>& a, const MortarRow<K>& b) { return a.joint == b.joint && a.point == b.point; };
@@ -279,6 +282,7 @@ void beginResults(const AdmmProblem<K>& problem, AdmmResults<K>& results)
 		row.couple = 0;
 	results.ties = problem.ties;
 	results.mortar = problem.mortar;
+	results.strength = problem.strength;
 	if (problem.step.instant)
 		for (GroupState<K>& group : results.states)
 			for (PointState<K>& p : group)
@@ -371,7 +375,7 @@ void AdmmSolver<K>::makeMatrix(const Problem& problem, const AdmmSettings& setti
 	for (MortarRow<K>& row : results.mortar)
 		row.resistance = row.wantedResistance(rowStepOf(problem.step, settings));
 	matrix.make(c, std::move(stiffness), results.mortar);
-	soundInA = problem.strength ? *problem.strength : Array<Strength>();
+	soundInA = problem.strength ? *problem.strength : Array<Strength<K>>();
 	turn = age = 0;
 	compared.follow(c.version());
 }

@@ -131,12 +131,12 @@ private:
 	std::vector<LaneArray> response; // Y, by row
 	Eigen::MatrixXd perSpin;         // (E Y)^-1
 	TieSolve<K> ties;
-	Array<Strength> soundInA; // strengths of rigid joints when A was made
-	double age {0};           // s, since R was last compared with the loads
-	double saved {0};         // iterations
-	bool cold {true};         // no step has been solved
-	bool ofInstant {false};   // R is that of an instant
-	bool atRest {false};      // R is that of a structure at rest
+	Array<Strength<K>> soundInA; // strengths of rigid joints when A was made
+	double age {0};              // s, since R was last compared with the loads
+	double saved {0};            // iterations
+	bool cold {true};            // no step has been solved
+	bool ofInstant {false};      // R is that of an instant
+	bool atRest {false};         // R is that of a structure at rest
 };
 
 } // namespace masonry::wall

@@ -7,7 +7,6 @@ namespace masonry::wall {
 
 template <class K>
 struct AdmmResults;
-struct Strength;
 
 // The points have done this in a step.
 struct PointsReport {
@@ -88,9 +87,8 @@ public:
 	// Adds the bodies of points that press as much as that with these states.
 	void addJammed(const PointStates<K>& states, std::vector<int>& bodies) const;
 	// The end of a step of length h, whose solution the states are: gaps and slips follow it. `before`: velocities before the step;
-	// `level`: speed above which a pair moves, m/s; `sound`: mortar that has not yielded, by group, none if empty.
-	PointsReport advance(const AdmmResults<K>& results, const LaneArray& before, double h, double level,
-	                     const Array<Strength>* sound = nullptr);
+	// `level`: speed above which a pair moves, m/s.
+	PointsReport advance(const AdmmResults<K>& results, const LaneArray& before, double h, double level);
 	// The bodies move by this, in packs: gaps follow. Returns how deep the deepest point is then, m.
 	double displace(const LaneArray& by);
 

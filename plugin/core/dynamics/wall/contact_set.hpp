@@ -35,10 +35,9 @@ public:
 	void limitMoved(const RigidSystem<K>& system, double fall) { points_.limitMoved(system, fall); }
 	void swapStates(PointStates<K>& states) { points_.swapStates(states); }
 	void setState(const OneState<K>& state, int pair, int point) { points_.setState(state, pair, point); }
-	PointsReport advance(const AdmmResults<K>& results, const LaneArray& before, double h, double level,
-	                     const Array<Strength>* sound = nullptr)
+	PointsReport advance(const AdmmResults<K>& results, const LaneArray& before, double h, double level)
 	{
-		return points_.advance(results, before, h, level, sound);
+		return points_.advance(results, before, h, level);
 	}
 	void setVelocity(const LaneArray& v) { bodies_.setVelocity(v); }
 	void setLinearVelocity(size_t body, const typename K::Vector& v) { bodies_.setLinearVelocity(body, v); }

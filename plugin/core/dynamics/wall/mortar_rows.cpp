@@ -1,5 +1,5 @@
 #include "dynamics/wall/mortar_rows.hpp"
-#include "impact/impulse_problem.hpp" // axesAlong
+#include <Eigen/LU>
 #include <cmath>
 
 namespace masonry::wall {
@@ -21,6 +21,136 @@ double tangential(const Values& values)
 	for (size_t k = 1; k < values.size(); ++k)
 		square += values[k] * values[k];
 	return std::sqrt(square);
+}
+
+template <class K>
+using Shear = Eigen::Matrix<double, K::rows - 1, 1>; // along the tangents, N s
+
+// Of a corner, along the tangents of its joint.
+Shear<Plane> shearOf(const ContactSet<Plane>& c, const MortarCorner& corner, const Eigen::Matrix2d&)
+{
+	return Shear<Plane>(c.points().states()[corner.slot.group][corner.point].pt[corner.slot.lane]);
+}
+Eigen::Matrix<double, 2, 3> tangentsOf(const ContactSet<Space>& c, const MortarCorner& corner)
+{
+	const PointLanes<Space>& rows = c.points().groups()[corner.slot.group].point[corner.point];
+	Eigen::Matrix<double, 2, 3> result;
+	for (int k = 0; k < 2; ++k)
+		result.row(k) = rows.tangent[k].axis.lane(corner.slot.lane);
+	return result;
+}
+Shear<Space> shearOf(const ContactSet<Space>& c, const MortarCorner& corner, const Matrix3& axes)
+{
+	const Lanes2& p = c.points().states()[corner.slot.group][corner.point].pt;
+	return axes.bottomRows<2>() * tangentsOf(c, corner).transpose() * Vector2(p.x[corner.slot.lane], p.y[corner.slot.lane]);
+}
+
+// Impulses of a joint with rows as those of its corners alone, N s.
+template <class K>
+struct CornerForces {
+	PerPoint<double> normal;
+	PerPoint<Shear<K>> tangential; // along the tangents of the points
+	double shear, bound;           // that of the joint, and how much it may be
+
+	CornerForces(const RigidSystem<K>& system, const MortarJoint<K>& joint, const MortarCorners& at, const ContactSet<K>& c,
+	             const std::vector<const MortarRow<K>*>& rows, double h);
+};
+
+template <>
+CornerForces<Plane>::CornerForces(const RigidSystem<Plane>&, const MortarJoint<Plane>& joint, const MortarCorners& at,
+                                  const ContactSet<Plane>& c, const std::vector<const MortarRow<Plane>*>& rows, double h)
+{
+	const auto [g, i] = at[0].slot;
+	const int side = c.bodies().isFree(joint.body2) ? 1 : 0;
+	const auto armOf = [&, lane = at[0].slot.lane](int k) {
+		const PointLanes<Plane>& point = c.points().groups()[at[k].slot.group].point[k];
+		return side == 1 ? point.a2n[lane] : point.a1n[lane];
+	};
+	const GroupState<Plane>& states = c.points().states()[g];
+	normal = {states[0].pn[i], states[1].pn[i]};
+	double all = states[0].pt[i] + states[1].pt[i];
+	for (const MortarRow<Plane>* row : rows) {
+		const double arm = (side == 1 ? 1 : -1) * row->arms[0].arm[side][0][2], share = (arm - armOf(0)) / (armOf(1) - armOf(0));
+		normal[0] += (1 - share) * row->p[0];
+		normal[1] += share * row->p[0];
+		all += row->p[1];
+	}
+	tangential.assign(2, Shear<Plane>(all / 2));
+	shear = std::abs(all);
+	bound = h * joint.law.cohesion * joint.area + joint.law.friction * (normal[0] + normal[1]);
+}
+
+double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+// Corners and where their friction acts, from the centre of body 2, along the tangents of the joint.
+struct FacePlan {
+	Matrix3 axes;
+	PerPoint<Vector2> corners, grips;
+	Vector2 centroid {Vector2::Zero()};
+
+	FacePlan(const RigidSystem<Space>& s, const MortarJoint<Space>& joint, const MortarCorners& at, const ContactSet<Space>& c)
+	    : axes(axesOf(joint, s.bodies[joint.body1].pose, s.bodies[joint.body2].pose))
+	{
+		for (const MortarCorner& corner : at) {
+			const FeatureLanes<Space>& feature = c.points().features()[corner.slot.group][corner.point];
+			corners.push_back(along(feature.arm.lane(corner.slot.lane)));
+			grips.push_back(corners.back() + along(feature.grip.lane(corner.slot.lane)));
+			centroid += corner.share * corners.back();
+		}
+	}
+	Vector2 along(const Vector3& v) const { return axes.bottomRows<2>() * v; }
+};
+
+// Normal impulses are shared as by a linear pressure, w_i (1 + (x_i - c) Q^-1 (x - c)) with Q = sum w_i (x_i - c)(x_i - c)^T. The corners
+// share the shear, and the torsion about its centre, by what they may bear: `shear` is then the largest at a corner, by its bound.
+template <>
+CornerForces<Space>::CornerForces(const RigidSystem<Space>& s, const MortarJoint<Space>& joint, const MortarCorners& at,
+                                  const ContactSet<Space>& c, const std::vector<const MortarRow<Space>*>& rows, double h)
+    : normal(at.size()), tangential(at.size()), shear(INFINITY), bound(1)
+{
+	const int size = int(at.size());
+	const FacePlan plan(s, joint, at, c);
+	Eigen::Matrix2d moments = Eigen::Matrix2d::Zero(); // Q
+	Vector2 all = Vector2::Zero();
+	double torque = 0;
+	for (int i = 0; i < size; ++i) {
+		const Vector2 arm = plan.corners[i] - plan.centroid;
+		moments += at[i].share * arm * arm.transpose();
+		normal[i] = c.points().states()[at[i].slot.group][at[i].point].pn[at[i].slot.lane];
+		const Shear<Space> own = shearOf(c, at[i], plan.axes);
+		all += own;
+		torque += cross(plan.grips[i], own);
+	}
+	const Eigen::Matrix2d perMoments = moments.inverse();
+	for (const MortarRow<Space>* row : rows) {
+		const CohesivePoint<Space>& point = joint.points[row->point];
+		const Quaternion& turn = s.bodies[joint.body2].pose.orientation;
+		const Vector2 place = plan.along(turn * point.place2), own(row->p[1], row->p[2]), push = perMoments * (place - plan.centroid);
+		for (int i = 0; i < size; ++i)
+			normal[i] += row->p[0] * at[i].share * (1 + (plan.corners[i] - plan.centroid).dot(push));
+		all += own;
+		torque += cross(place + plan.along(turn * point.grip2), own);
+	}
+	PerPoint<double> most(size);
+	double sum = 0, turning = 0;
+	Vector2 middle = Vector2::Zero();
+	for (int i = 0; i < size; ++i) {
+		most[i] = std::max(0., h * joint.law.cohesion * joint.area * at[i].share + joint.law.friction * normal[i]);
+		sum += most[i];
+		middle += most[i] * plan.grips[i];
+	}
+	middle /= sum;
+	for (int i = 0; i < size; ++i)
+		turning += most[i] * (plan.grips[i] - middle).squaredNorm();
+	if (!(turning > 0))
+		return;
+	const double turn = (torque - cross(middle, all)) / turning;
+	shear = 0;
+	for (int i = 0; i < size; ++i) {
+		const Vector2 arm = plan.grips[i] - middle, perBound = all / sum + turn * Vector2(-arm.y(), arm.x());
+		shear = std::max(shear, perBound.norm());
+		tangential[i] = tangentsOf(c, at[i]) * plan.axes.bottomRows<2>().transpose() * Vector2(most[i] * perBound);
+	}
 }
 
 } // namespace
@@ -66,7 +196,7 @@ double MortarRow<K>::slip(double h) const
 	Values mean {};
 	for (int k = 1; k < n; ++k)
 		mean[k] = (before[k] + z[k]) / 2;
-	return slides() ? h * tangential(mean) : 0;
+	return tangential(z) > 0 ? h * tangential(mean) : 0; // the bounds of p are those of the next pass already
 }
 
 template <class K>
@@ -105,23 +235,18 @@ void MortarRow<K>::push(const LaneArray& velocity, LaneArray& momentum) const
 		arms[k].push(p[k] + (z[k] - u[k] - (k == 0 ? bias : 0)) / resistance, velocity, momentum);
 }
 
+// Of the pairs of a joint the first that meets.
 template <class K>
 void Mortar<K>::find(const RigidSystem<K>& s, const ContactSet<K>& c)
 {
-	std::vector<std::pair<std::array<int, 2>, int>> joints;
-	for (size_t j = 0; j < s.mortar.size(); ++j)
-		joints.push_back({{s.mortar[j].body1, s.mortar[j].body2}, int(j)});
-	std::sort(joints.begin(), joints.end());
-	slots.assign(s.mortar.size(), {-1, -1});
-	for (int g = 0; g < int(c.layout().groups().size()); ++g)
-		for (int i = 0; i < c.layout().groups()[g].count; ++i) {
-			if (c.layout().groups()[g].number[i] > 0)
-				continue;
-			const ContactPair<K>& pair = s.pairs[c.layout().groups()[g].pair[i]];
-			const std::array<int, 2> bodies {pair.body1, pair.body2};
-			const auto at = std::lower_bound(joints.begin(), joints.end(), std::pair(bodies, 0));
-			if (at != joints.end() && at->first == bodies)
-				slots[at->second] = {g, i};
+	if (!known.follow(c.version()) && corners.size() == s.mortar.size())
+		return;
+	corners.assign(s.mortar.size(), {});
+	for (const int pair : c.layout().numbers())
+		if (const MortarJoint<K>* joint = mortarBetween(s.mortar, s.pairs[pair].body1, s.pairs[pair].body2)) {
+			MortarCorners& of = corners[joint - s.mortar.data()];
+			if (of.empty())
+				of = cornersOf(c, pair);
 		}
 }
 
@@ -137,13 +262,15 @@ void Mortar<K>::begin(const RigidSystem<K>& s, const ContactSet<K>& c, const Lan
 	const double time = h > 0 ? h : 1 / std::numeric_limits<float>::epsilon(); // s
 	for (int j = 0; j < int(s.mortar.size()); ++j) {
 		const MortarJoint<K>& joint = s.mortar[j];
-		const auto [g, i] = slots[j];
-		if (g < 0 || joint.isBroken())
+		if (corners[j].empty() || joint.isBroken())
 			continue;
-		if (joint.isRigid) {
-			strength[g].pull[i] = time * joint.law.tensileStrength * joint.area / 2;
-			strength[g].shift[i] = time * joint.law.cohesion * joint.area / 2 / joint.law.friction;
-		} else if (h > 0)
+		if (joint.isRigid)
+			for (const MortarCorner& corner : corners[j]) {
+				Strength<K>& of = strength[corner.slot.group];
+				of.pull[corner.point][corner.slot.lane] = time * joint.law.tensileStrength * joint.area * corner.share;
+				of.shift[corner.point][corner.slot.lane] = time * joint.law.cohesion * joint.area * corner.share / joint.law.friction;
+			}
+		else if (h > 0)
 			addRows(s, c, before, j, h);
 	}
 }
@@ -154,11 +281,7 @@ void Mortar<K>::addRows(const RigidSystem<K>& s, const ContactSet<K>& c, const L
 	constexpr double pullBack = 0.2; // share of an opening beyond the crack that a step takes back. Larger: shivering; smaller: drift
 	const MortarJoint<K>& joint = s.mortar[j];
 	const typename K::Pose &pose1 = s.bodies[joint.body1].pose, &pose2 = s.bodies[joint.body2].pose;
-	const auto turned = [](const typename K::Pose& pose, const typename K::Vector& v) {
-		return typename K::Vector(pose.toGlobal(v) - pose.position);
-	};
-	const typename K::Vector normal = (turned(pose1, joint.normal1) + turned(pose2, joint.normal2)).normalized();
-	const auto axes = axesAlong(normal);
+	const auto axes = axesOf(joint, pose1, pose2);
 	for (int k = 0; k < int(joint.points.size()); ++k) {
 		const CohesivePoint<K>& point = joint.points[k];
 		if (point.state.isBroken)
@@ -167,13 +290,14 @@ void Mortar<K>::addRows(const RigidSystem<K>& s, const ContactSet<K>& c, const L
 		MortarRow<K> row;
 		row.joint = j;
 		row.point = k;
-		row.group = slots[j].group;
-		row.lane = slots[j].lane;
+		row.group = corners[j].front().slot.group;
+		row.lane = corners[j].front().slot.lane;
+		const typename K::Vector grip1 = pose1.toGlobal(point.place1 + point.grip1), grip2 = pose2.toGlobal(point.place2 + point.grip2);
 		for (int r = 0; r < K::rows; ++r) {
 			const typename K::Vector axis = axes.row(r);
 			row.arms[r].body = {joint.body1, joint.body2};
-			row.arms[r].arm[0] = speedArm(c.bodies(), joint.body1, -axis, at1 - pose1.position);
-			row.arms[r].arm[1] = speedArm(c.bodies(), joint.body2, axis, at2 - pose2.position);
+			row.arms[r].arm[0] = speedArm(c.bodies(), joint.body1, -axis, (r == 0 ? at1 : grip1) - pose1.position);
+			row.arms[r].arm[1] = speedArm(c.bodies(), joint.body2, axis, (r == 0 ? at2 : grip2) - pose2.position);
 			row.before[r] = row.arms[r].rate(before);
 			row.p[r] = h * point.force[r];
 			row.z[r] = row.u[r] = 0;
@@ -197,13 +321,13 @@ std::vector<int> Mortar<K>::yielding(const RigidSystem<K>& s, const ContactSet<K
 	std::vector<int> result;
 	for (int j = 0; j < int(s.mortar.size()); ++j) {
 		const MortarJoint<K>& joint = s.mortar[j];
-		const auto [g, i] = slots[j];
-		if (!joint.isRigid || g < 0)
+		if (!joint.isRigid)
 			continue;
 		double most = 0;
-		for (int k = 0; k < c.points().groups()[g].count; ++k) {
+		for (const auto& [number, slot, k, share] : corners[j]) {
+			const auto [g, i] = slot;
 			const PointLanes<K>& at = c.points().groups()[g].point[k];
-			const auto rate = [&, lane = i](int row, const LaneArray& v) {
+			const auto rate = [&, lane = slot.lane](int row, const LaneArray& v) {
 				return rateOf(at, row, lane, 2, &v[packs<K> * joint.body2]) - rateOf(at, row, lane, 1, &v[packs<K> * joint.body1]);
 			};
 			// A point that moves before the step goes on for a part of it even if it is stopped.
@@ -225,15 +349,15 @@ void Mortar<K>::letGo(RigidSystem<K>& s, const ContactSet<K>& c, const std::vect
 {
 	for (const int j : joints) {
 		MortarJoint<K>& joint = s.mortar[j];
-		const auto [g, i] = slots[j];
 		joint.isRigid = false;
-		// A first guess of the forces: the tension is that of a corner, and half of the shear is at each point.
+		const auto axes = axesOf(joint, s.bodies[joint.body1].pose, s.bodies[joint.body2].pose);
+		// A first guess of the forces: the tension is that of a corner, and all points have as much shear.
 		typename CohesivePoint<K>::Force force = CohesivePoint<K>::Force::Zero();
-		for (int k = 0; k < c.points().groups()[g].count; ++k) {
-			const PointState<K>& p = c.points().states()[g][k];
-			force[0] = std::min(force[0], p.pn[i] / h);
+		for (const MortarCorner& corner : corners[j]) {
+			const Shear<K> shear = shearOf(c, corner, axes);
+			force[0] = std::min(force[0], c.points().states()[corner.slot.group][corner.point].pn[corner.slot.lane] / h);
 			for (int row = 1; row < K::rows; ++row)
-				force[row] += component(p.pt, row - 1, i) / (h * joint.points.size());
+				force[row] += shear[row - 1] / (h * joint.points.size());
 		}
 		for (CohesivePoint<K>& point : joint.points)
 			point.force = force;
@@ -268,8 +392,8 @@ MortarWork Mortar<K>::finish(RigidSystem<K>& s, ContactSet<K>& c, const std::vec
 		// Corners that are pressed while a crack is stopped take their part of the pull.
 		double pull = -row.p[0];
 		if (row.z[0] <= clear * missed)
-			for (int corner = 0; corner < c.points().groups()[row.group].count; ++corner)
-				pull -= point.area / joint.area * std::max(0., c.points().states()[row.group][corner].pn[row.lane]);
+			for (const MortarCorner& corner : corners[row.joint])
+				pull -= point.area / joint.area * std::max(0., c.points().states()[corner.slot.group][corner.point].pn[corner.slot.lane]);
 		point.openingDamage += std::max(0., pull) * opening / (h * point.area * joint.law.fractureEnergy);
 		point.slipDamage += row.bound[1] * slip / (h * point.area * joint.law.shearFractureEnergy);
 		const double damage = point.openingDamage + point.slipDamage;
@@ -282,74 +406,40 @@ MortarWork Mortar<K>::finish(RigidSystem<K>& s, ContactSet<K>& c, const std::vec
 		work.friction += joint.law.friction * std::min(0., row.tension) * slip / h;
 	}
 	for (size_t j = 0; j < s.mortar.size(); ++j)
-		if (!s.mortar[j].isRigid && !grows[j] && slots[j].group >= 0 && s.mortar[j].isSound())
-			hold(s.mortar[j], slots[j], c, still[j], h);
+		if (!s.mortar[j].isRigid && !grows[j] && !corners[j].empty() && s.mortar[j].isSound())
+			hold(s, s.mortar[j], corners[j], c, still[j], h);
 	return work;
 }
 
 // The joint is rigid again if its corners could bear its forces and it is closed.
-template <>
-void Mortar<Plane>::hold(MortarJoint<Plane>& joint, const Slot& slot, ContactSet<Plane>& c, const std::vector<const MortarRow<Plane>*>& of,
-                         double h) const
+template <class K>
+void Mortar<K>::hold(const RigidSystem<K>& s, MortarJoint<K>& joint, const MortarCorners& at, ContactSet<K>& c,
+                     const std::vector<const MortarRow<K>*>& of, double h) const
 {
 	constexpr double within = 0.95; // share of the strength. Larger: joints yield again at once
-	const auto [g, i] = slot;
-	const PointLanes<Plane>* corners[2] = {&c.points().groups()[g].point[0], &c.points().groups()[g].point[1]};
-	const int pair = c.layout().groups()[g].pair[i];
-	OneState<Plane> states[2] = {c.points().state(pair, 0), c.points().state(pair, 1)};
-	const int side = c.bodies().isFree(joint.body2) ? 1 : 0;
-	const auto armOf = [&](int k) { return side == 1 ? corners[k]->a2n[i] : corners[k]->a1n[i]; };
-	double normal[2] = {states[0].pn, states[1].pn}, shear = states[0].pt[0] + states[1].pt[0];
-	for (const MortarRow<Plane>* row : of) {
-		const double arm = (side == 1 ? 1 : -1) * row->arms[0].arm[side][0][2], share = (arm - armOf(0)) / (armOf(1) - armOf(0));
-		normal[0] += (1 - share) * row->p[0];
-		normal[1] += share * row->p[0];
-		shear += row->p[1];
+	if (int(at.size()) < K::dimension)
+		return;
+	const CornerForces<K> forces(s, joint, at, c, of, h);
+	double open = 0;
+	for (size_t k = 0; k < at.size(); ++k) {
+		open = std::max(open, c.points().groups()[at[k].slot.group].point[at[k].point].gap[at[k].slot.lane] * joint.law.openingRate());
+		if (forces.normal[k] < -within * (h * joint.law.tensileStrength * joint.area * at[k].share))
+			return;
 	}
-	const double pull = h * joint.law.tensileStrength * joint.area / 2,
-	             most = h * joint.law.cohesion * joint.area + joint.law.friction * (normal[0] + normal[1]),
-	             open = std::max(corners[0]->gap[i], corners[1]->gap[i]) * joint.law.openingRate();
-	if (open > deadZone / 2 || std::min(normal[0], normal[1]) < -within * pull || std::abs(shear) > within * most)
+	if (open > deadZone / 2 || !(forces.shear <= within * forces.bound))
 		return;
 	joint.isRigid = true;
-	for (CohesivePoint<Plane>& point : joint.points) {
+	for (CohesivePoint<K>& point : joint.points) {
 		point.forgetCrack(1);
 		point.force.setZero();
 	}
-	for (int k = 0; k < 2; ++k) {
-		states[k].pn = normal[k];
-		states[k].pt[0] = shear / 2;
-		c.setState(states[k], pair, k);
+	const int pair = c.layout().groups()[at[0].slot.group].pair[at[0].slot.lane];
+	for (size_t k = 0; k < at.size(); ++k) {
+		OneState<K> state = c.points().state(pair, at[k].number);
+		state.pn = forces.normal[k];
+		state.pt = forces.tangential[k];
+		c.setState(state, pair, at[k].number);
 	}
-}
-
-template <>
-void Mortar<Space>::hold(MortarJoint<Space>&, const Slot&, ContactSet<Space>&, const std::vector<const MortarRow<Space>*>&, double) const
-{
-}
-
-MortarJoint<Plane> mortarJoint(const RigidSystem<Plane>& s, const ContactPair<Plane>& pair, const MortarLaw& law, double width)
-{
-	const RigidBody<Plane>&body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
-	const ContactFrame<Plane> first = frameOf(pair.points[0], body1, body1.pose, body2, body2.pose),
-	                          last = frameOf(pair.points[1], body1, body1.pose, body2, body2.pose);
-	const Vector2 normal = first.axes.row(0), middle = (first.position + last.position) / 2, half = (last.position - first.position) / 2;
-	MortarJoint<Plane> joint;
-	joint.body1 = pair.body1;
-	joint.body2 = pair.body2;
-	joint.law = law;
-	joint.normal1 = body1.pose.rotateBack(normal);
-	joint.normal2 = body2.pose.rotateBack(normal);
-	joint.area = width * 2 * half.norm();
-	for (const double side : {-1., 1.}) {
-		const Vector2 at = middle + side / std::sqrt(3.) * half;
-		CohesivePoint<Plane> point;
-		point.area = joint.area / 2;
-		point.place1 = body1.pose.toLocal(at);
-		point.place2 = body2.pose.toLocal(at);
-		joint.points.push_back(point);
-	}
-	return joint;
 }
 
 template struct MortarRow<Plane>;

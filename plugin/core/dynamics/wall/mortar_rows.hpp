@@ -1,13 +1,14 @@
 #pragma once
-// Mortar of walls (dynamics/model/mortar_joint.hpp). In the plane.
+// Mortar of walls (dynamics/model/mortar_joint.hpp).
 //
-// A rigid joint has no rows of its own: its corners bear more than those of a dry joint, each
+// A rigid joint has no rows of its own: its corners bear more than those of a dry joint, each by its share w (mortar_patch.hpp)
 //
-//     p_n >= -h f_t A/2,    |p_t| <= h c A/2 + mu p_n
+//     p_n >= -h w f_t A,    |p_t| <= h w c A + mu p_n
 //
-// so that its resultants obey |M| <= (N + f_t A) d/2 and |V| <= c A + mu N, with the depth d and the compression N. These are exactly the
-// limits of a joint with two cohesive points (tension f_t A/2, cohesion c A/2) and pressed corners. A structure of rigid joints is nearly a
-// linear problem: with a small penalty R the solver ends it in few iterations, and unfinished ones crack nothing.
+// so that in the plane its resultants obey |M| <= (N + f_t A) d/2 and |V| <= c A + mu N, with the depth d and the compression N; in space
+// N + f_t A acts within the patch, and torsion is resisted as by an even cohesion. These are exactly the limits of a joint with cohesive
+// points (tension w f_t A, cohesion w c A) and pressed corners. A structure of rigid joints is nearly a linear problem: with a small
+// penalty R the solver ends it in few iterations, and unfinished ones crack nothing.
 //
 // A rigid joint that opens or slips, by more than a dead zone, yields: the step is solved again with rows for its cohesive points and with
 // the corners of a dry joint. With the largest opening d so far, b = (gap - d)/h, w = u + b and the damped tension g, a row obeys
@@ -23,14 +24,15 @@
 // The damage of a step is the work of p_n and c_t over the fracture energies. A joint that yields and has not been damaged is rigid again
 // when it is closed and its forces are within its strength.
 #include "dynamics/model/rigid_system.hpp"
-#include "dynamics/wall/contact_set.hpp"
+#include "dynamics/wall/mortar_patch.hpp"
 #include "dynamics/wall/tie_rows.hpp"
 
 namespace masonry::wall {
 
-// Rigid mortar bears the tension `pull` at each point of a lane, and its cohesion is as if it pressed more by `shift`, N s.
+// Rigid mortar bears the tension `pull` at a point of a lane, and its cohesion is as if it pressed more by `shift`, N s.
+template <class K>
 struct alignas(alignment) Strength {
-	Lanes pull {}, shift {};
+	std::array<Lanes, lanePoints<K>> pull {}, shift {};
 
 	template <class Archive>
 	void serialize(Archive& archive)
@@ -38,6 +40,13 @@ struct alignas(alignment) Strength {
 		archive(pull, shift);
 	}
 };
+
+// By group; nullptr: no mortar.
+template <class K>
+const Strength<K>* firstOf(const Array<Strength<K>>* strength)
+{
+	return strength && !strength->empty() ? strength->data() : nullptr;
+}
 
 // These values are the same for all rows of a step.
 struct RowStep {
@@ -106,18 +115,16 @@ public:
 	                  double missed) const;
 
 	std::vector<MortarRow<K>> rows;
-	Array<Strength> strength; // by group; empty: no mortar
+	Array<Strength<K>> strength; // by group; empty: no mortar
 
 private:
 	void find(const RigidSystem<K>& system, const ContactSet<K>& contacts);
 	void addRows(const RigidSystem<K>& system, const ContactSet<K>& contacts, const LaneArray& before, int joint, double h);
-	void hold(MortarJoint<K>& joint, const Slot& slot, ContactSet<K>& contacts, const std::vector<const MortarRow<K>*>& rows,
-	          double h) const;
+	void hold(const RigidSystem<K>& system, MortarJoint<K>& joint, const MortarCorners& corners, ContactSet<K>& contacts,
+	          const std::vector<const MortarRow<K>*>& rows, double h) const;
 
-	std::vector<Slot> slots; // of the pairs, by joint
+	std::vector<MortarCorners> corners; // by joint; empty: its pair is not among the lanes
+	Follower known;                     // the contacts that they are of
 };
-
-// Mortar between the two blocks of a pair, whose points and poses are those of now; `width` is that of the joint across the plane, m.
-MortarJoint<Plane> mortarJoint(const RigidSystem<Plane>& system, const ContactPair<Plane>& pair, const MortarLaw& law, double width);
 
 } // namespace masonry::wall

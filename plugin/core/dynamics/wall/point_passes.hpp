@@ -38,7 +38,8 @@ void measureCorner(FeatureLanes<Space>& of, int lane, const Feature& feature, co
                    const Solid<ConvexPolyhedron>& shape2);
 
 // Places the friction of a pair by its loads; the rows of its points are to be taken anew. Where nothing presses, points within `touching`
-// (m) of the nearest one share alike: these land together. A motion in a plane turns no face about its normal.
+// (m) of the nearest one share alike: these land together. The cohesion of sound mortar is even. A motion in a plane turns no face about
+// its normal.
 inline void placeFriction(const PointPass<Plane>&, const PointStates<Plane>&, const ContactPair<Plane>&, const Slots&, double) {}
 void placeFriction(const PointPass<Space>& pass, const PointStates<Space>& states, const ContactPair<Space>& pair, const Slots& slots,
                    double touching);

@@ -16,7 +16,7 @@ struct AdvancePass {
 	Group<K>* groups;
 	GroupState<K>* states;
 	const GroupResult<K>* results;
-	const Strength* strength; // by group, of sound mortar; nullptr: none
+	const Strength<K>* strength; // nullptr: none
 	int begin, end;
 	const Lanes* before;
 	double h, level;
@@ -29,7 +29,6 @@ MASONRY_INLINE void advanceGroups(const AdvancePass<K>& pass, Ended& ended)
 	const auto [groups, states, results, strength, begin, end, before, h, level, reached, moving] = pass;
 	for (int g = begin; g < end; ++g) {
 		const Mask rough = groups[g].friction >= maxFriction;
-		const Mask sound = strength ? strength[g].pull > 0 : Mask {}; // slip adds up until the joint yields
 		Mask in {}, moves {};
 		for (int k = 0; k < groups[g].count; ++k) {
 			PointLanes<K>& at = groups[g].point[k];
@@ -38,7 +37,8 @@ MASONRY_INLINE void advanceGroups(const AdvancePass<K>& pass, Ended& ended)
 			at.gap += h * row.un;
 			p.zero = p.pn < groups[g].most ? p.zero : smaller(p.zero, at.gap);
 			const Mask glides = slides(p.pt, groups[g].friction * (rough ? p.pn : row.bound));
-			p.slip = select(glides & ~sound, typename PointState<K>::Tangent {}, p.slip + h * row.ut);
+			const Mask isSound = strength ? strength[g].pull[k] > 0 : Mask {}; // the slip at which it yields may take many steps
+			p.slip = select(glides & ~isSound, typename PointState<K>::Tangent {}, p.slip + h * row.ut);
 			if (const Mask slid = glides & (p.pn > 0); any(slid)) {
 				const Bodies<K> v1(before, groups[g].body1), v2(before, groups[g].body2);
 				const Lanes loss = -0.5 * dot(row.actedT, slipRate(v1, v2, at) + row.ut);
@@ -84,17 +84,15 @@ MASONRY_LANES void advancePass(const AdvancePass<Space>& pass, Ended& ended) { a
 } // namespace
 
 template <class K>
-PointsReport ContactPoints<K>::advance(const AdmmResults<K>& results, const LaneArray& before, double h, double level,
-                                       const Array<Strength>* sound)
+PointsReport ContactPoints<K>::advance(const AdmmResults<K>& results, const LaneArray& before, double h, double level)
 {
 	Ended ended[Team::maxParts + 1] {};
 	PointsReport result;
 	result.reached.resize(groups_.size());
 	result.moving.resize(groups_.size());
 	layout.allParts([&](const Part& part, int number) {
-		const Strength* strength = sound && !sound->empty() ? sound->data() : nullptr;
 		const AdvancePass<K> pass {
-		    groups_.data(), states_.data(),        results.points.data(), strength, part.begin, part.end, before.data(), h,
+		    groups_.data(), states_.data(),        results.points.data(), firstOf(results.strength), part.begin, part.end, before.data(), h,
 		    level,          result.reached.data(), result.moving.data()};
 		advancePass(pass, ended[number]);
 	});
@@ -113,8 +111,8 @@ double ContactPoints<K>::displace(const LaneArray& by)
 	return *std::max_element(left.begin(), left.end());
 }
 
-template PointsReport ContactPoints<Plane>::advance(const AdmmResults<Plane>&, const LaneArray&, double, double, const Array<Strength>*);
-template PointsReport ContactPoints<Space>::advance(const AdmmResults<Space>&, const LaneArray&, double, double, const Array<Strength>*);
+template PointsReport ContactPoints<Plane>::advance(const AdmmResults<Plane>&, const LaneArray&, double, double);
+template PointsReport ContactPoints<Space>::advance(const AdmmResults<Space>&, const LaneArray&, double, double);
 template double ContactPoints<Plane>::displace(const LaneArray&);
 template double ContactPoints<Space>::displace(const LaneArray&);
 

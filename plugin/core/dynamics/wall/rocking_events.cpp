@@ -173,10 +173,8 @@ void RockingEvents<K>::takeLaw(const RigidSystem<K>& s, const ContactSet<K>& c, 
 	event.support = at.support;
 	event.face = point.face;
 	const ContactPair<K>& pair = s.pairs[c.layout().groups()[point.group].pair[point.lane]];
-	const bool isBonded = std::any_of(s.mortar.begin(), s.mortar.end(), [&](const MortarJoint<K>& joint) {
-		return joint.body1 == pair.body1 && joint.body2 == pair.body2 && !joint.isBroken();
-	});
-	event.asked = isBonded ? NAN : pair.restitution; // the law is that of dry joints
+	const MortarJoint<K>* mortar = mortarBetween(s.mortar, pair.body1, pair.body2);
+	event.asked = mortar && !mortar->isBroken() ? NAN : pair.restitution; // the law is that of dry joints
 	event.normal = (at.second ? 1 : -1) * normalOf(c, point);
 	event.speed = std::max(0., -at.rate(predicted));
 	event.share = event.speed > 0 ? std::clamp(1 - at.p.gap[at.lane] / (h * event.speed), 0., 1.) : 0;

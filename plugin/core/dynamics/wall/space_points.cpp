@@ -215,15 +215,18 @@ void placeFriction(const PointPass<Space>& pass, const PointStates<Space>& state
 	const auto featureOf = [&](int i) -> FeatureLanes<Space>& { return pass.features[slotOf(i).group][i % lanePoints<Space>]; };
 	NormalForces forces(pair.size(), 0.);
 	PerPoint<ContactFrame<Space>> frames(pair.size());
+	const MortarJoint<Space>* mortar = mortarBetween(pass.system.mortar, pair.body1, pair.body2);
+	const bool isEven = mortar && mortar->isRigid && !mortar->isBroken();
 	bool isLoaded = false;
 	double nearest = farAway;
 	for (int i = 0; i < pair.size(); ++i) {
-		forces[i] = states[slotOf(i).group][i % lanePoints<Space>].filteredImpulse[slotOf(i).lane];
+		if (!isEven)
+			forces[i] = states[slotOf(i).group][i % lanePoints<Space>].filteredImpulse[slotOf(i).lane];
 		takeFrame(pointOf(i), featureOf(i), slotOf(i).lane, pass.bodies.gyration(pair.body2), frames[i]);
 		isLoaded |= forces[i] > 0;
 		nearest = std::min(nearest, frames[i].gap);
 	}
-	for (int i = 0; !isLoaded && i < pair.size(); ++i)
+	for (int i = 0; !isLoaded && !isEven && i < pair.size(); ++i)
 		forces[i] = frames[i].gap <= nearest + touching;
 	const auto offsets = frictionOffsets(
 	    pair.size(), [&](int i) -> const ContactFrame<Space>& { return frames[i]; }, forces);

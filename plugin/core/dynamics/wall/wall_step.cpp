@@ -85,7 +85,7 @@ double WallStep<K>::advancePart(RigidSystem<K>& s, double h, bool divisible)
 	const MortarWork cracks =
 	    mortar.finish(s, contacts, results.mortar, h, std::max(status.residual, settings.solver.tolerance * step.fall));
 	const double level = tolerance::wall::motion * tolerance::restSpeed * scales.speed;
-	const PointsReport points = contacts.advance(results, ledger.velocityBefore(), h, level, &mortar.strength);
+	const PointsReport points = contacts.advance(results, ledger.velocityBefore(), h, level);
 	ledger.takeContacts(s, contacts, results, points.friction + cracks.friction, cracks.crack);
 	report.forceResidual = std::max(report.forceResidual, points.forceError);
 	events.take(s, contacts, results);

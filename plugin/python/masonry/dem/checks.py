@@ -63,14 +63,12 @@ def _values(mortar):
 
 def check_use_of_mortar(blocks, model, rigid):
     """ValueError where blocks with mortar have gaps, or the scene is to have what knows no mortar: a model, other arguments {name: value} of rigid blocks."""
-    if model == "spatial":
-        raise ValueError("model = 'spatial': must be 'compliant', or 'planar' with method='wall', where a BlockMat has mortar")
     walls = rigid["method"] == "wall" and model != "compliant"
-    if model == "planar" and not walls:
-        raise ValueError(f"model = 'planar' with method = {shown(rigid['method'] or 'auto')}: must have method='wall', or be 'compliant', where a BlockMat has mortar")
+    if model in ("planar", "spatial") and not walls:
+        raise ValueError(f"model = {shown(model)} with method = {shown(rigid['method'] or 'auto')}: must have method='wall', or be 'compliant', where a BlockMat has mortar")
     for name in (name for name, value in rigid.items() if value and not walls):
         raise ValueError(f"{name} = {shown(rigid[name])}: is for rigid blocks, and must be left out where a BlockMat has mortar, which needs compliant joints "
-                         "(model='compliant') or, in one upright plane, method='wall'")
+                         "(model='compliant') or method='wall'")
     if O.iter == 0:
         _check_gaps(blocks)
 

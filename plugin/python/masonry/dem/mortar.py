@@ -33,7 +33,7 @@ def bond(ids=None, material=None, joints="all"):
     material    a JointMat. Stiffness (compliant joints) and friction angle that it does not give are those of the joint
     joints      'all', 'bed' or 'head': head joints have upright faces
 
-    Raises ValueError where no two of the bodies touch. The scene must have its engines, of model='compliant' or, in one upright plane, of method='wall'; the bonds act from the next step on. A joint that has been bonded before gets new mortar."""
+    Raises ValueError where no two of the bodies touch. The scene must have its engines, of model='compliant' or of method='wall'; the bonds act from the next step on. A joint that has been bonded before gets new mortar."""
     check_joint_material(material)
     if ids is not None and not (np.iterable(ids) and all(is_whole(id, 0) for id in ids)):
         raise ValueError(f"ids = {shown(ids)}: must be a list of ids of bodies, whole numbers from 0 on, or None for all")
@@ -43,7 +43,7 @@ def bond(ids=None, material=None, joints="all"):
         raise ValueError(f"joints = {shown(joints)}: must be 'all', 'bed' or 'head'")
     engine = joint_engine_given()
     if isinstance(engine, wrapper.MoreauJeanIntegrator) and engine.method != "wall":
-        raise ValueError(f"method = {shown(engine.method)}: rigid blocks are bonded by dem.engines(method='wall') only, in one upright plane; or take model='compliant'")
+        raise ValueError(f"method = {shown(engine.method)}: rigid blocks are bonded by dem.engines(method='wall') only; or take model='compliant'")
     if ids is not None and not len(ids):
         return 0
     if ids is not None and len(set(map(int, ids))) < 2:

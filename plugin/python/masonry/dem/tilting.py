@@ -113,7 +113,7 @@ class TiltTable:
         jammed      blocks moved, and stopped in joints that were closed as built: taken for collapse, since friction alone stops them
         unclear     blocks still moved, slowing down, when five times `hold` had passed: taken for collapse, and named in `doubts`
         missed      a step missed the contact laws: half the stair is tried, unless it is down to the tolerance
-    Blocks with mortar (BlockMat(mortar=), dem.wall(split=)) need method='wall' and one upright plane. Their joints are bonded under gravity alone and keep what a load that they stand has
+    Blocks with mortar (BlockMat(mortar=), dem.wall(split=)) need method='wall'. Their joints are bonded under gravity alone and keep what a load that they stand has
     cracked; Collapse.remarks says so.
     Steps that miss the contact laws are counted in the trials, without a warning; of each step it seeks one impact (mostEvents = 1), since what follows where
     blocks begin to move does not matter. Whether the multiplier can be trusted stands in Collapse.doubts.
