@@ -113,15 +113,9 @@ vector<masonry::BaseJump> RockingJointEngine::jumpsOf(const vector<BaseMotionEng
 
 // --- time step ---
 
-Real RockingJointEngine::criticalTimeStep()
-{
-	return masonry::criticalTimeStep(step.system.bodies, presentContacts(), step.system.ties);
-}
+Real RockingJointEngine::criticalTimeStep() { return masonry::criticalTimeStep(step.system.bodies, presentContacts(), step.system.ties); }
 
-Real RockingJointEngine::largestTimeStep()
-{
-	return masonry::largestTimeStep(step.system.bodies, presentContacts(), step.system.ties);
-}
+Real RockingJointEngine::largestTimeStep() { return masonry::largestTimeStep(step.system.bodies, presentContacts(), step.system.ties); }
 
 Real RockingJointEngine::chosenTimeStep()
 {
