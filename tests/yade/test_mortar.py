@@ -31,6 +31,18 @@ def test_a_brick_that_is_pulled():
     assert engine.madeEnergy + engine.lostEnergy < 1e-3 * energy["crackDissip"]
 
 
+@pytest.mark.parametrize("given", ({"model": "auto"}, {"model": "planar", "method": "wall"}))
+def test_the_energy_of_cracks_is_there_before_the_first_step(given):
+    """By both methods dem.energy() has the same keys before and after it."""
+    O.reset()
+    material = brick_material()
+    dem.block(SIZE, material, on=dem.base((0.5, 0.5, 0.1), material))
+    O.engines = quiet_engines(**given)
+    before = dem.energy()
+    O.step()
+    assert before["crackDissip"] == dem.energy()["crackDissip"] == 0 and before.keys() == dem.energy().keys()
+
+
 @pytest.mark.parametrize("pressure", (0, 0.1e6))
 def test_a_couplet(pressure):
     """c + mu s at the peak and mu s at the end; the energy G A of the crack."""

@@ -73,20 +73,42 @@ Feature identify(const FacePair& pair, const OverlapTask& task, const OverlapPoi
 
 double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-// Weights by triangles T_i = (c, p_i, p_i+1) about the centroid c, A = sum T_i:  w_i = (T_i-1 + T_i) / (2 A).
-// Their sum is 1. Their first moment is m = sum T_i (p_i + p_i+1) / (2 A); the centroid of triangle i is
-// (c + p_i + p_i+1) / 3, so c = sum T_i (c + p_i + p_i+1) / (3 A) = c/3 + 2 m/3, hence m = c.
-void setWeights(const OverlapPolygon& polygon, double area, const Vector2& centroid, ContactPatch& out)
+// Weights are Wachspress's coordinates of the centroid c (A Rational Finite Element Basis, 1975): w_i is proportional to
+// E_i / (T_i-1 T_i), with the triangles E_i = (p_i-1, p_i, p_i+1) and T_i = (c, p_i, p_i+1). They are positive, their sum is 1 and their
+// first moment is c. They are continuous: a corner that appears on a side begins with no weight, and two that come out of one share its
+// weight. Vertices within their reach may leave the outline with corners that are not convex: they have no weight.
+void setWeights(const OverlapPolygon& polygon, const Vector2& centroid, ContactPatch& out)
 {
-	const std::size_t size = polygon.size();
-	for (std::size_t i = 0; i < size; ++i)
+	PerPoint<int> corners;
+	for (int i = 0; i < static_cast<int>(polygon.size()); ++i) {
+		corners.push_back(i);
 		out.points[i].weight = 0;
-	for (std::size_t i = 0; i < size; ++i) {
-		const std::size_t next = i + 1 == size ? 0 : i + 1;
-		const double share = std::abs(cross(polygon[i].place - centroid, polygon[next].place - centroid)) / (4 * area);
-		out.points[i].weight += share;
-		out.points[next].weight += share;
 	}
+	const auto place = [&](int k) -> const Vector2& {
+		const int size = static_cast<int>(corners.size());
+		return polygon[corners[(k + size) % size]].place;
+	};
+	double turning = 0; // above 0: counter-clockwise
+	for (int k = 0; k < static_cast<int>(corners.size()); ++k)
+		turning += cross(place(k) - centroid, place(k + 1) - centroid);
+	const double way = turning > 0 ? 1 : -1;
+	const auto ear = [&](int k) { return way * cross(place(k) - place(k - 1), place(k + 1) - place(k)); };
+	for (int k = 0; k < static_cast<int>(corners.size()) && corners.size() > 3;)
+		if (ear(k) > 0) {
+			++k;
+		} else {
+			corners.erase(corners.begin() + k);
+			k = 0;
+		}
+	double sum = 0;
+	for (int k = 0; k < static_cast<int>(corners.size()); ++k) {
+		const Vector2 here = place(k) - centroid;
+		const double weight = std::max(0., ear(k)) / (cross(place(k - 1) - centroid, here) * cross(here, place(k + 1) - centroid));
+		out.points[corners[k]].weight = weight;
+		sum += weight;
+	}
+	for (const int i : corners)
+		out.points[i].weight /= sum;
 }
 
 // Area, centroid and greatest distance from the first corner, by the triangles about that corner.
@@ -204,7 +226,7 @@ bool facePatch(const FacePair& pair, const OverlapTask& task, const Pose& refere
 		point.gap = corner.height;
 		point.feature = identify(pair, task, corner, previous, found);
 	}
-	setWeights(polygon, extent.area, extent.centroid, out);
+	setWeights(polygon, extent.centroid, out);
 	out.feature = std::move(found);
 	return true;
 }

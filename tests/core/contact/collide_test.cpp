@@ -105,6 +105,22 @@ TEST_CASE("Squares turned by 45 degrees overlap in a regular octagon", "[patch]"
 	CHECK(features(patch).size() == 8);
 }
 
+// Squares that are turned against each other by a little overlap in an octagon whose sides cross in their middles and near their corners.
+// In the limit it is a square, of four corners.
+TEST_CASE("A corner that appears on a side begins with no weight", "[patch]")
+{
+	for (double yaw : {1e-6, 1e-4, 1e-2}) {
+		const auto patch = touch(cube, origin, cube, {zAxis, turn(yaw, zAxis)});
+		REQUIRE(patch.size() == 8);
+		double atCorners = 0, inMiddles = 0;
+		for (const auto& point : patch.points)
+			(point.position1.head<2>().norm() > 0.6 ? atCorners : inMiddles) += point.weight;
+		CHECK(std::abs(atCorners - 1) < yaw);
+		CHECK(inMiddles > 0);
+		CHECK(inMiddles < yaw);
+	}
+}
+
 TEST_CASE("Running bond: half of the face, two vertices of each block", "[patch]")
 {
 	const auto patch = touch(cube, origin, cube, {{.5, 0, 1}, Quaternion::Identity()});

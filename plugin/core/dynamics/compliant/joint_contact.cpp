@@ -4,6 +4,7 @@
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace masonry {
 
@@ -152,14 +153,34 @@ bool hasPointsOf(const JointContact& contact, const ContactPatch& patch)
 	                  [](const JointPoint& a, const PatchPoint& b) { return a.feature == b.feature; });
 }
 
+// A point without a past begins in the middle of the life of its joint: its shear is that of the nearest point with a past, or the mean of
+// the old points where none of them is left. Otherwise a corner that splits in two would lose its force or a part of it, and would give
+// energy when it is whole again.
 void takePoints(JointContact& contact, const ContactPatch& patch)
 {
 	const auto old = contact.points;
 	const bool rocking = contact.rocking();
+	Vector3 mean = Vector3::Zero();
+	for (const JointPoint& point : old)
+		mean += point.shear / double(old.size());
+	const auto pastOf = [&old](const PatchPoint& point) {
+		return std::find_if(old.begin(), old.end(), [&](const JointPoint& p) { return p.feature == point.feature; });
+	};
+	const auto nearestShear = [&](const PatchPoint& point) {
+		double least = std::numeric_limits<double>::infinity();
+		Vector3 shear = mean;
+		for (const PatchPoint& other : patch.points)
+			if (const auto past = pastOf(other); past != old.end())
+				if (const double distance = (other.position1 - point.position1).squaredNorm(); distance < least) {
+					least = distance;
+					shear = past->shear;
+				}
+		return shear;
+	};
 	contact.points.clear();
 	for (const PatchPoint& point : patch.points) {
-		const auto found = std::find_if(old.begin(), old.end(), [&](const JointPoint& p) { return p.feature == point.feature; });
-		contact.points.push_back(found != old.end() ? *found : JointPoint {point.feature, rocking});
+		const auto past = pastOf(point);
+		contact.points.push_back(past != old.end() ? *past : JointPoint {point.feature, rocking, nearestShear(point)});
 	}
 }
 

@@ -64,7 +64,7 @@ def energy():
     e = joint_engine_given()
     keys = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
     elastic = isinstance(e, wrapper.RockingJointEngine) or bool(e.ties)
-    bonded = ("crackDissip",) if getattr(e, "bondedIds", None) else ()
+    bonded = ("crackDissip",) if getattr(e, "bondedIds", None) or any(getattr(b.mat, "mortar", None) for b in O.bodies) else ()
     found = {key: getattr(e, key) for key in keys + bonded if elastic or key not in ("elastPotential", "dampDissip")}
     if found["potential"] != 0 or not isinstance(e, wrapper.RockingJointEngine):
         found["potential"] += potential_of_loads()

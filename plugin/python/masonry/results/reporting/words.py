@@ -138,9 +138,28 @@ def _of_drift(way, height, moved):
     return f"{said}: not small beside the largest drift; a run with a smaller tolerance or step tells whether it matters (dem.compare)"
 
 
+# Share of the energy turned over from which energy that steps make or lose spoils a run: what a run warns of (core/tolerances.hpp: madeShare, and madeByJoints of compliant joints).
+_SPOILT, _SPOILT_BY_JOINTS = 0.05, 7.5e-3
+
+
+def _distrust(about):
+    """Sentences on energy that came from nothing or vanished, where it is too much to trust the run."""
+    given, compliant = about.get("solver", {}), about.get("model", {}).get("model") == "compliant"
+    turned, said = given.get("turnedOver") or 0, []
+    for name, what, most in (("madeEnergy", "come from nothing", _SPOILT_BY_JOINTS if compliant else _SPOILT), ("lostEnergy", "vanished", _SPOILT)):
+        energy = given.get(name) or 0
+        if turned > 0 and energy > most * turned:
+            said.append(f"Do not trust this run: {quantity(energy, 'J')} of energy have {what}, {100 * energy / turned:.2g} % of what was turned over")
+    return said
+
+
 @_written_by_masonry
 def failures(about):
-    """Sentences on failures of the solver."""
+    """Sentences on failures of the solver, and on energy that should not have been."""
+    return _distrust(about) + _missed(about)
+
+
+def _missed(about):
     given = about.get("solver", {})
     if not given.get("failures"):
         return []
