@@ -11,8 +11,6 @@ from rocking_scene import refuses
 from scipy.optimize import linprog
 from yade import O, Quaternion, Vector3
 
-import masonry
-
 # Bisection ends within 1e-3 of the multiplier; the mean of the bracket is off by at most half of that, and a trial by _REST.
 CLOSE = 1e-3
 
@@ -472,22 +470,6 @@ def test_any_direction_in_plan(direction, multiplier):
     base, stone = ground(2.0)
     dem.block((0.4, 0.4, 1.6), stone, on=base)
     assert abs(found(direction=direction).multiplier / multiplier - 1) < CLOSE
-
-
-def test_a_scene_with_ties():
-    """It is refused, since a tie stretches, which looks like a jam, and breaks for all trials to come. A base whose acceleration grows by 0.1 g/s finds the multiplier: a block of
-    0.4 x 1.2 m that a tie of strength F holds at the height z tips at b/a + F z/(W a); the vibration of the tie under its growing force is below 1 % of F."""
-    base, stone = ground(2.0)
-    block = dem.block((0.4, 0.4, 1.2), stone, on=base)
-    tie = dem.tie(block, (0, 0, 1.0), base, (2, 0, 1.0), stiffness=1e6, strength=500)
-    refuses(dem.TiltTable, "ties", "tie.dead = True", "dem.record_motion()")
-    growth = 0.1 * 9.81
-    O.engines = dem.engines(dem.record_motion(masonry.Record(0.5, 0.5 * growth * np.arange(13), unit="m/s^2"), ids=[base]))
-    assert dem.run(6, until=lambda: tie.broken)
-    expected = 0.2 / 0.6 + 500 * 1.0 / (9.81 * O.bodies[block].state.mass * 0.6)
-    assert abs(growth * tie.brokenAt / 9.81 / expected - 1) < 0.01
-    tie.dead = True
-    dem.TiltTable()
 
 
 def test_the_report_page(tmp_path):

@@ -9,8 +9,8 @@ from masonry.dem import tilting_report
 
 @dataclass
 class Trial:
-    """What a multiplier did: 'rest', 'collapse', 'jammed' where blocks moved and stopped in joints that were closed all along, 'unclear' where they
-    still moved at the end and slowed down, or 'missed' where the contact laws were, so that a smaller stair is taken."""
+    """What a multiplier did: 'rest', 'collapse', 'jammed' where blocks moved and stopped in joints that were closed all along, 'stretched' where they
+    rest on ties beyond `share`, 'unclear' where they still moved at the end and slowed down, or 'missed' where the contact laws were, so that a smaller stair is taken."""
 
     multiplier: float
     verdict: str

@@ -241,9 +241,12 @@ def _wall(name, ends, thickness, brick):
     longest = max(abs(x1 - x0), abs(y1 - y0))
     axis = 0 if abs(x1 - x0) >= abs(y1 - y0) else 1
     off = abs(y1 - y0) if axis == 0 else abs(x1 - x0)
-    if not longest >= brick[0] / 2 or off > FIT * brick[0]:
-        raise ValueError(f"plan[{name!r}] goes from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g}): must go along x or y, half a block at least: corners at other angles are "
-                         "not supported. Turn the whole building with `along`, or add this wall with dem.wall(along=...), without a bond to the others")
+    goes = f"plan[{name!r}] goes from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g})"
+    if not longest >= brick[0] / 2:
+        raise ValueError(f"{goes} and its brick is {brick[0]:g} m long: a wall must be half a brick long at least; plan and brick are in m")
+    if off > FIT * brick[0]:
+        raise ValueError(f"{goes}: must go along x or y: corners at other angles are not supported. "
+                         "Turn the whole building with `along`, or add this wall with dem.wall(along=...), without a bond to the others")
     number_given(f"thickness of wall {name!r}", thickness)
     leaves = next((leaves for leaves in (1, 2) if math.isclose(thickness, leaves * brick[1], rel_tol=FIT)), None)
     if leaves is None:

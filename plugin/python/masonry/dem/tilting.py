@@ -19,7 +19,7 @@ from masonry.dem.loads import load_engines
 from masonry.dem.mechanism import Mechanism
 from masonry.dem.mortar import damage
 from masonry.dem.stiffness import has_stiffness
-from masonry.dem.ties import tied
+from masonry.dem.tilting_ties import TiltedTies
 from tqdm import tqdm
 from yade import O, Vector3
 
@@ -55,6 +55,8 @@ _MOST = 30
 _SETTLED, _GAP = 0.01, 1e-7
 # Largest damage from which a joint counts as cracked, as in dem.damage().
 _CRACKED = 0.02
+# Blocks on ties may rest beyond `share`: movement, relative to it, from which on they are taken not to.
+_BEYOND = 2
 
 
 def _direction_given(direction):
@@ -111,8 +113,12 @@ class TiltTable:
         rest        the blocks stand, and the load grows from here
         collapse    a block has moved by `share`, or blocks gain speed steadily
         jammed      blocks moved, and stopped in joints that were closed as built: taken for collapse, since friction alone stops them
+        stretched   blocks rest on ties, but farther than `share` from where they were built: taken for collapse, and named in `doubts`
         unclear     blocks still moved, slowing down, when five times `hold` had passed: taken for collapse, and named in `doubts`
         missed      a step missed the contact laws: half the stair is tried, unless it is down to the tolerance
+    Ties (dem.tie) stretch. A tie breaks where the blocks rest and it bears more than its strength, the most overloaded one first, and the trial goes on without it.
+    Blocks are stopped where they are fastest (kinetic damping), so that no vibration adds to the force of a tie. The stretch counts as movement: `share` must be
+    larger than it. Afterwards the ties are as built. ramp() refuses scenes with ties.
     Blocks with mortar (BlockMat(mortar=), dem.wall(split=)) need method='wall'. Their joints are bonded under gravity alone and keep what a load that they stand has
     cracked; Collapse.remarks says so.
     Steps that miss the contact laws are counted in the trials, without a warning; of each step it seeks one impact (mostEvents = 1), since what follows where
@@ -134,15 +140,13 @@ class TiltTable:
         self._free = [b for b in self._blocks if b.dynamic]
         if not self._free:
             raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.TiltTable()")
-        if tied():
-            raise ValueError("the scene has ties (dem.tie), which stretch in a trial and stay broken in the next: TiltTable knows none. Take them away "
-                             "(tie.dead = True), or pull the scene by a dem.record_motion() whose acceleration grows slowly")
         before = joint_engine()
         if getattr(before, "bondsAsked", None) or O.iter > 0 and getattr(before, "bondedIds", None):
             raise ValueError("O.engines have joints that have been bonded in this run: TiltTable makes engines of its own, and begins with the mortar of "
                              "BlockMat(mortar=) and of dem.wall(split=) before its first step")
         if model == "auto" and any(has_stiffness(b.mat) for b in self._blocks):
             raise ValueError("model = 'auto': must be 'planar' or 'spatial' where a BlockMat has a joint stiffness: TiltTable is for rigid blocks")
+        self._ties = TiltedTies()
         self._start = [(b.state.pos, b.state.ori) for b in self._blocks]
         self._loads = [(engine, Vector3(engine.force)) for engine in load_engines()]
         self._as_built, self._row = poses(self._blocks), {b.id: k for k, b in enumerate(self._blocks)}
@@ -171,16 +175,19 @@ class TiltTable:
             raise ValueError(f"tolerance = {tolerance}: must be above 0 and below 1")
         if not 0 < number_given("lower", lower) < _MOST:
             raise ValueError(f"lower = {lower}: must be above 0 and below {_MOST}")
-        trials, rest, mechanism, cracked = [], None, None, []
+        trials, rest, mechanism, cracked, broken = [], None, None, [], []
 
         def hold(multiplier, **ends):
             nonlocal rest, mechanism
-            trials.append(self._hold_load(integrator, multiplier, **ends))
+            with self._ties.loaded():
+                trials.append(self._hold_load(integrator, multiplier, **ends))
             verdict = trials[-1].verdict
             if verdict == "rest":
                 rest = self._keep(integrator)
                 if count := _cracked():
                     cracked.append((multiplier, count))
+                if count := self._ties.broken():
+                    broken.append((multiplier, count))
             elif rest:
                 mechanism = self._mechanism()
                 self._go_back(integrator, rest)
@@ -192,7 +199,7 @@ class TiltTable:
             integrator = self._begin(0.0)
             if hold(0.0, settles=True) != "rest":
                 raise ValueError("the blocks do not stand without a sideways load: check supports and friction")
-            low, high, growth, careful, sure = 0.0, math.inf, _GROWTH, False, False
+            low, high, growth, careful, sure = 0.0, math.inf, _GROWTH, bool(self._ties), False  # blocks that stretch a tie gain speed first
             while not sure:
                 while math.isinf(high) or high - low > tolerance * high:
                     height = low or lower / _GROWTH
@@ -206,16 +213,19 @@ class TiltTable:
                     elif verdict == "missed":
                         growth = stair / height / 2
                     else:
-                        high, sure = tried, not early
+                        high, sure = tried, not early and not (self._ties and stair > tolerance * tried)
                 if not sure and hold(high) == "rest":  # they moved off, and came to rest
                     low, high, careful = high, math.inf, True
+                    growth = tolerance if self._ties else growth
                 else:
                     sure = True
-        return self._collapse((low + high) / 2, (low, high), trials, mechanism, cracked)
+        return self._collapse((low + high) / 2, (low, high), trials, mechanism, cracked, broken)
 
     def ramp(self, rate=0.02, start=0.0, progress=None):
         """The Collapse of a multiplier that grows slowly. rate: per sqrt(height / gravity) of the scene. The bracket is from where the
         blocks last rested to where one had moved by `share`; the multiplier is its lower end: what follows is delay."""
+        if self._ties:
+            raise ValueError("ramp() is not for scenes with ties (dem.tie), which stretch while the load grows, so that blocks never rest: use bisect()")
         positive_given("rate", rate)
         if not 0 <= number_given("start", start) < _MOST:
             raise ValueError(f"start = {start}: must be from 0 to below {_MOST}")
@@ -244,7 +254,9 @@ class TiltTable:
         """Holds one multiplier, of 30 at most in size, from rest. The scene is left as it is at the end."""
         if not abs(number_given("multiplier", multiplier)) <= _MOST:
             raise ValueError(f"multiplier = {multiplier}: must be from -{_MOST} to {_MOST}")
-        return self._hold_load(self._begin(multiplier), multiplier)
+        integrator = self._begin(multiplier)
+        with self._ties.loaded():
+            return self._hold_load(integrator, multiplier)
 
     # --- a trial ---
 
@@ -258,6 +270,8 @@ class TiltTable:
         start = self._places()
         while not verdict:
             for _ in range(_LOOK):
+                if self._ties:
+                    self._ties.brake(self._free, self._speed())
                 O.step()  # in this thread: O.run(n, True) looks every 40 ms only whether it has ended
                 if again and integrator.failures > before:
                     return Trial(multiplier, "missed", self._moved(), O.time, integrator.failures - before)
@@ -269,10 +283,16 @@ class TiltTable:
                 O.dt = min(max(self._dt, _SHARE_OF_TIME * O.time), integrator.largestTimeStep)
             else:
                 steady, quiet = 0, quiet + 1
-            if self._moved() > self.share * self._size or (early and steady >= _STEADY):
+            moved = self._moved() / (self.share * self._size)
+            if moved > (_BEYOND if self._ties else 1) or (early and steady >= _STEADY):
                 verdict = "collapse"
             elif quiet >= 2 and (not moving or O.time >= moving + _QUIET * self._hold):
-                verdict = "jammed" if not settles and self._is_jammed(start) else "rest"
+                if self._ties.break_worst():
+                    moving, quiet = O.time, 0
+                elif moved > 1:
+                    verdict = "stretched"
+                else:
+                    verdict = "jammed" if not settles and self._is_jammed(start) else "rest"
             elif O.time >= self._hold and not quiet:
                 if speed >= fastest:
                     verdict = "collapse"
@@ -301,6 +321,7 @@ class TiltTable:
     def _put_back(self):
         O.interactions.clear()
         O.resetTime()
+        self._ties.put_back()
         for body, (pos, ori) in zip(self._blocks, self._start):
             body.state.pos, body.state.ori = pos, ori
             body.state.vel = body.state.angVel = body.state.angMom = Vector3.Zero
@@ -340,9 +361,9 @@ class TiltTable:
         return _SETTLED * self.share * self._size
 
     def _is_jammed(self, start):
-        """Whether blocks that rest have moved since `start`, and lean on none that they had not touched before. Friction allows such a rest: a
-        smaller load has moved them, or would if they were pushed."""
-        if self._moved(start) <= self._settled():
+        """Whether blocks that rest have moved since `start`, and neither lean on one that they had not touched before nor hang on a tie that has stretched. Friction
+        allows such a rest: a smaller load has moved them, or would if they were pushed."""
+        if self._moved(start) <= self._settled() or self._ties.hold_more(_GAP * self._size):
             return False
         pressed = [(self._row[i.id1], self._row[i.id2]) for i in O.interactions if any(force.norm() > 0 for force in i.phys.forces)]
         return not pressed or self._gaps_as_built(np.array(pressed)).max() <= _GAP * self._size
@@ -366,7 +387,7 @@ class TiltTable:
     def _mechanism(self):
         return Mechanism(self._blocks, self._start, self._joints, 1 if abs(self._towards[1]) > abs(self._towards[0]) else 0)
 
-    def _collapse(self, multiplier, bracket, trials, mechanism, cracked=()):
+    def _collapse(self, multiplier, bracket, trials, mechanism, cracked=(), broken=()):
         failures = sum(t.failures for t in trials if t.multiplier in bracket)
         other = "localised" if self._method == "wall" else "wall"
         doubts = [f"the integrator missed its tolerance or left out impacts in {failures} steps of the trials that decide: compare with "
@@ -374,22 +395,28 @@ class TiltTable:
         unclear = [f"{t.multiplier:.5g}" for t in trials if t.verdict == "unclear"]
         if unclear:
             doubts.append(f"blocks still moved, slowing down, when the trials of {', '.join(unclear)} were ended; taken for collapse: a larger hold decides them")
-        return Collapse(multiplier, bracket, trials, mechanism.joints(), mechanism.moving(), doubts, self._remarks(trials, bracket, cracked), mechanism,
+        if any(t.verdict == "stretched" and t.multiplier in bracket for t in trials):
+            doubts.append(f"at {bracket[1]:.5g} blocks rest on ties that have stretched, farther than {1e3 * self.share * self._size:.2g} mm (share) from where they were built; taken for "
+                          "collapse: a larger share lets the ties stretch")
+        return Collapse(multiplier, bracket, trials, mechanism.joints(), mechanism.moving(), doubts, self._remarks(trials, bracket, cracked, broken), mechanism,
                         self._about())
 
     def _about(self):
         direction = self.direction if isinstance(self.direction, str) else f"({self._towards[0]:.4g}, {self._towards[1]:.4g})"
         return {**about([b.id for b in self._blocks], []), "pull": f"towards {direction}, {'a body force' if self.load == 'force' else 'by gravity that turns'}"}
 
-    def _remarks(self, trials, bracket, cracked):
+    def _remarks(self, trials, bracket, cracked, broken):
         moved = [t for t in trials if t.verdict == "rest" and t.moved > self._settled()]
         jammed = [t for t in trials if t.verdict == "jammed" and t.multiplier in bracket]
         remarks = []
         if moved:
+            where = "on ties that stretch, or against others that they did not touch" if self._ties else "against others that they did not touch"
             remarks.append(f"below it, from {moved[0].multiplier:.5g} on, blocks move by up to {1e3 * max(t.moved for t in moved):.2g} mm and come to rest "
-                           f"against others that they did not touch: less than {1e3 * self.share * self._size:.2g} mm (share) is no collapse")
+                           f"{where}: less than {1e3 * self.share * self._size:.2g} mm (share) is no collapse")
         if jammed:
             remarks.append(f"at {jammed[-1].multiplier:.5g} blocks move by {1e3 * jammed[-1].moved:.2g} mm and jam in joints that were closed before: taken for collapse")
         if cracked:
             remarks.append(f"below it, from {cracked[0][0]:.5g} on, joints have cracked and the blocks stand: {cracked[-1][1]} at {cracked[-1][0]:.5g}")
+        if broken:
+            remarks.append(f"below it, from {broken[0][0]:.5g} on, ties have broken and the blocks stand: {broken[-1][1]} at {broken[-1][0]:.5g}")
         return remarks

@@ -8,8 +8,8 @@ from masonry.results.reporting import curves, template, text, words
 
 # Rows of the table of joints: those that moved most.
 _JOINTS = 40
-_VERDICTS = {"rest": "the blocks stand", "collapse": "collapse", "jammed": "blocks move and jam: taken for collapse", "unclear": "still moving: taken for collapse",
-             "missed": "contact laws missed: half the stair is tried"}
+_VERDICTS = {"rest": "the blocks stand", "collapse": "collapse", "jammed": "blocks move and jam: taken for collapse", "stretched": "ties have stretched: taken for collapse",
+             "unclear": "still moving: taken for collapse", "missed": "contact laws missed: half the stair is tried"}
 
 
 def write(collapse, path, title):
