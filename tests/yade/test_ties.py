@@ -228,6 +228,28 @@ def test_a_hanging_block():
     assert abs(tie.force / (9.81 * mass) - 1) < 1e-6 and abs(O.bodies[block].state.pos[2] + 2) < 1e-8, tie.force
 
 
+@pytest.mark.parametrize("model, walls", EVERY)
+@pytest.mark.parametrize("strength", (1.9, 2.1))
+def test_a_weight_at_once_breaks_what_holds_less_than_twice_its_force(model, walls, strength):
+    """A block that is let go on a strut without load sinks by m g/k (1 - cos w t), w^2 = k/m, by all models: they do not damp what their steps resolve. Its force reaches twice the
+    weight, less (w h)^2/12, where `force` is the mean of a step h; positions are right to half a step of `wall`, w h/2."""
+    O.reset()
+    base = dem.base((4, 4, 0.2), stone())
+    block = dem.block((0.4, 0.4, 0.4), O.bodies[base].mat, center=(0, 0, 1))
+    k, heavy = 1e6, weight(block)
+    omega = math.sqrt(k * 9.81 / heavy)
+    strut = dem.tie(block, (0, 0, 1.2), base, (0, 0, 3), k, tension_only=False, strength=strength * heavy)
+    O.engines = engines(model, walls, dt=0.04 / omega)
+    balance, worst, largest = Balance(), 0, 0
+    while O.time < 6 * math.pi / omega and not strut.broken:
+        O.step()
+        worst = max(worst, abs(1 - O.bodies[block].state.pos[2] - heavy / k * (1 - math.cos(omega * O.time))))
+        largest = max(largest, strut.force / heavy)
+    print(f"{model}, walls={walls}: off by {worst * k / heavy:.4f} of m g/k, largest force {largest:.4f} m g, balance {balance.error() * k / heavy**2:.1e}")
+    assert strut.broken == (strength < 2) and worst < 0.022 * heavy / k
+    assert strut.broken or abs(largest - 2) < 2e-3 and abs(balance.error()) < 5e-3 * heavy**2 / k
+
+
 def test_the_critical_step_counts_ties():
     """A block that hangs on one tie through its centre, and nothing else: 2 sqrt(m/k); a longer step is refused."""
     O.reset()
