@@ -40,6 +40,7 @@ VALIDATION = {
     "validation/paper/figures/figure_6_spectrum_C0.7.png": ("validation/paper/run", "results/paper/figure_6_spectrum_C0.7.png"),
     "validation/mortar/shear_wall.png": ("validation/mortar/run --shear-wall", "results/mortar/shear_wall.png"),
     "validation/convex/frusta.png": ("validation/convex/run", "results/convex/frusta.png"),
+    "validation/convex/decay.png": ("validation/convex/run", "results/convex/decay.png"),
     "validation/walls/tilting/wall_6.png": ("validation/walls/tilting/run", "results/tilting/wall_6.png"),
     "validation/walls/tilting/wall_10.png": ("validation/walls/tilting/run", "results/tilting/wall_10.png"),
     "validation/walls/restitution/overturning.png": ("validation/walls/restitution/run", "results/restitution/overturning.png"),
