@@ -107,8 +107,8 @@ void MoreauJeanIntegrator::leaveScene()
 	along = Vector3r::Zero();
 	forgetImpacts(*this);
 	forget(frictDissip, impactDissip, dampDissip, crackDissip, bondedIds, bondedState, bondsAsked, baseWork, potentialShift, worstResidual,
-	       substeps, events, unlocalised, sweeps, factorisations, movingSteps, madeEnergy, lostEnergy, turnedOver, lift, toldMade,
-	       toldLost, failures, firstFailure, warned);
+	       substeps, events, unlocalised, sweeps, factorisations, movingSteps, madeEnergy, lostEnergy, turnedOver, lift, toldMade, toldLost,
+	       failures, firstFailure, warned);
 }
 
 vector<Real> MoreauJeanIntegrator::remembered()

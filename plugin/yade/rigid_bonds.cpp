@@ -32,9 +32,8 @@ int MoreauJeanIntegrator::bond(const vector<int>& of, const shared_ptr<JointMat>
 	else if (outdated())
 		renew();
 	if (!wall)
-		throw std::invalid_argument(
-		    "material is not allowed here: of rigid blocks, those of method='wall' have mortar; "
-		    "take dem.engines(method='wall') or dem.engines(model='compliant').");
+		throw std::invalid_argument("material is not allowed here: of rigid blocks, those of method='wall' have mortar; "
+		                            "take dem.engines(method='wall') or dem.engines(model='compliant').");
 	const std::set<int> members(of.begin(), of.end());
 	for (const auto& [id1, id2, isHead] : sceneOf(memory).jointsInTouch())
 		if ((of.empty() || (members.count(id1) && members.count(id2))) && (joints == "all" || isHead == (joints == "head")))
