@@ -155,7 +155,8 @@ def test_a_symmetric_wall_in_space():
 
 
 def test_a_wall_with_a_window_against_compliant_joints():
-    """These have one answer, but for what their stiffness and the speed of the load make of it (5 %)."""
+    """These have one answer, but for what their stiffness and the speed of the load make of it (5 %). The delay falls with the root of the speed: 0.460, 0.446 and 0.437 at 0.4, 0.2
+    and 0.1 a second, towards 0.417."""
     wall_with_openings(1.6, 2.0, [(0.6, 0.6, 0.4, 0.8)])
     result, compliant = found(), collapse_of_compliant_joints((1, 0, 0))
     print(f"rigid blocks {result.multiplier:.4f}, compliant joints {compliant:.3f}")
@@ -212,7 +213,7 @@ def statically_possible(table, direction, mu, sides=16):
     return -found.fun
 
 
-def collapse_of_compliant_joints(along, penetration=3e-5, rate=0.2):
+def collapse_of_compliant_joints(along, penetration=3e-5, rate=0.1):
     """The multiplier at which a block has gone farther than a hundredth of its width, where it grows by `rate` a second: joints with a stiffness
     have one answer, which depends on nothing but the load that has been."""
     O.engines = dem.engines(model="compliant", penetration=penetration)
@@ -233,7 +234,7 @@ def test_a_wall_with_a_corner(direction, along):
     dem.return_wall(4, 2, 2, (0.4, 0.2, 0.2), stone, base)
     possible, result = statically_possible(dem.TiltTable(direction=direction), along, 0.65), found(direction=direction)
     assert O.engines[-1].method == "wall"
-    compliant = collapse_of_compliant_joints(along, rate=0.1)
+    compliant = collapse_of_compliant_joints(along)
     print(f"towards {direction}: compliant joints {compliant:.3f}, rigid blocks {result.multiplier:.3f}, forces possible up to {possible:.3f}")
     assert compliant < 0.9 * possible and abs(result.multiplier / compliant - 1) < 0.05
 
