@@ -37,24 +37,24 @@ double turnShareOf(const JointContact& contact)
 	return face > 0 ? std::min(1., face / (area * points)) : 1;
 }
 
-// Returns what a face of the stiffness k gives to its points `among`: w_i (r k x_i + (1 - r) sum), zero to the others.
-PointValues shared(const JointContact& contact, double k, double r, const PointValues& x, const PerPoint<bool>& among)
+} // namespace
+
+PointValues JointContact::shared(double k, const PointValues& x, const PerPoint<bool>& among) const
 {
+	const double r = turnShare;
 	double weights = 0, sum = 0;
-	for (int i = 0; i < contact.size(); ++i)
+	for (int i = 0; i < size(); ++i)
 		if (among[i]) {
-			weights += contact.patch.points[i].weight;
-			sum += contact.patch.points[i].weight * x[i];
+			weights += patch.points[i].weight;
+			sum += patch.points[i].weight * x[i];
 		}
 	const double total = r * k * sum / (1 - (1 - r) * weights);
-	PointValues result(contact.size());
-	for (int i = 0; i < contact.size(); ++i)
+	PointValues result(size());
+	for (int i = 0; i < size(); ++i)
 		if (among[i])
-			result[i] = contact.patch.points[i].weight * (r * k * x[i] + (1 - r) * total);
+			result[i] = patch.points[i].weight * (r * k * x[i] + (1 - r) * total);
 	return result;
 }
-
-} // namespace
 
 // The sum S of the forces is the root of S = sum w_i max(0, r k d_i + (1 - r) S). Newton's method from S = 0: the right side is convex, of
 // a slope below 1, so that S grows to the root and points only join.
@@ -70,7 +70,7 @@ PointValues JointContact::springForces(const PointValues& depths) const
 				carries[i] = joined = true;
 		if (!joined)
 			return forces;
-		forces = shared(*this, k, r, depths, carries);
+		forces = shared(k, depths, carries);
 		total = 0;
 		for (const double force : forces)
 			total += force;

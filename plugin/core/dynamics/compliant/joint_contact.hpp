@@ -88,6 +88,8 @@ struct JointContact {
 	double stiffnessArea() const;                                                    // m^2, what the stiffness per area is multiplied with
 	double normalStiffness() const { return law.normalStiffness * stiffnessArea(); } // of the closed face, N/m
 	double shearStiffness(int i) const { return law.shearStiffness * stiffnessArea() * patch.points[i].weight; }
+	// What a face of the stiffness k gives to its points `among`, w_i (r k x_i + (1 - r) sum), and zero to the others.
+	PointValues shared(double k, const PointValues& x, const PerPoint<bool>& among) const;
 	PointValues springForces(const PointValues& depths) const; // N_i at these depths (m), N
 	// d_i at which the springs bear these forces, where they do not vanish, m.
 	PointValues depthsFor(const PointValues& forces) const;

@@ -93,7 +93,7 @@ void takeNormalForces(JointContact& contact, double damping, const PointValues& 
 	PerPoint<bool> carries;
 	for (const double spring : contact.springs)
 		carries.push_back(spring > 0);
-	const PointValues dashpots = shared(contact, damping, contact.turnShare, approaches, carries);
+	const PointValues dashpots = contact.shared(damping, approaches, carries);
 	for (int i = 0; i < contact.size(); ++i) {
 		if (carries[i])
 			contact.points[i].normalForce = std::max(0., contact.springs[i] + dashpots[i]);
