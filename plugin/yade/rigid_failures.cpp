@@ -67,14 +67,15 @@ void MoreauJeanIntegrator::count(const masonry::StepReport& report)
 	const string sums = addErrors();
 	const string jammed = jam(report);
 	const bool crowded = report.unlocalised > 0;
-	if (report.converged && jammed.empty() && !crowded && sums.empty() && report.created == 0 && !(report.deepest > 0) &&
+	const bool unsettled = report.unsettled > 0;
+	if (report.converged && jammed.empty() && !crowded && !unsettled && sums.empty() && report.created == 0 && !(report.deepest > 0) &&
 	    !(report.turn > 0))
 		return;
 
 	const Real ofStep = gravity.norm() * scene->dt; // the speed that gravity gives
 	// A residual this small moves nothing that anybody could measure: it is counted, without a word.
-	const bool matters = !jammed.empty() || crowded || !sums.empty() || report.created != 0 || report.deepest > 0 || report.turn > 0 ||
-	                     !(report.residual <= masonry::tolerance::negligible * ofStep);
+	const bool matters = !jammed.empty() || crowded || unsettled || !sums.empty() || report.created != 0 || report.deepest > 0 ||
+	                     report.turn > 0 || !(report.residual <= masonry::tolerance::negligible * ofStep);
 	std::ostringstream text;
 	text << "In the step from t = " << scene->time << " s ";
 	text << jammed;
@@ -85,6 +86,9 @@ void MoreauJeanIntegrator::count(const masonry::StepReport& report)
 		text << "Where nothing slips they may have no solution: a pivot that would have to pull, or an edge that lands while it moves "
 		        "along the "
 		        "face. Give the materials a frictionAngle instead of noSlip. ";
+	if (unsettled)
+		text << "the solver has not settled whether the mortar of " << report.unsettled << " joints gives way (residual " << report.residual
+		     << " m/s), so that it holds: give dem.engines() a larger dt, 1e-3 s if this is a smaller one. ";
 	if (crowded)
 		text << report.unlocalised << " points closed after mostEvents = " << mostEvents << " events, plastically at its end. ";
 	if (report.created > 0)
@@ -112,10 +116,11 @@ void MoreauJeanIntegrator::count(const masonry::StepReport& report)
 	if (first)
 		firstFailure = text.str();
 	if (onTrouble == "stop")
-		throw std::runtime_error(text.str() + " Give dem.engines() a smaller dt, or set MoreauJeanIntegrator.onTrouble='continue'.");
+		throw std::runtime_error(text.str() + (unsettled ? " Or" : " Give dem.engines() a smaller dt, or") +
+		                         " set MoreauJeanIntegrator.onTrouble='continue'.");
 	if (first && onTrouble != "count")
 		LOG_WARN(firstFailure << " The run goes on; MoreauJeanIntegrator.failures counts such steps."
-		                      << (jammed.empty()
+		                      << (jammed.empty() && !unsettled
 		                              ? " A smaller dt of dem.engines() may help; dem.compare() tells whether the answer depends on it."
 		                              : ""));
 }

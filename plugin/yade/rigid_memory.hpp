@@ -13,7 +13,7 @@
 namespace yade {
 
 /// The row of numbers begins with that of its layout, to be changed with any list of members, and that of the scene's dimensions.
-constexpr Real layout = -18;
+constexpr Real layout = -19;
 
 /// Lets `read` read a row. Throws std::runtime_error if another version has written it.
 template <class Read>

@@ -18,17 +18,17 @@ struct CohesivePoint {
 	double area {0};                                                         // m^2
 	MortarPoint state;
 	Force force {Force::Zero()};              // on body 2 in the last step, along the normal and the tangents, N
-	double opening {0}, slip {0};             // of a crack that does not count yet, m
+	double slip {0};                          // of a crack that does not count yet, m
 	double openingDamage {0}, slipDamage {0}; // which it would add to D
 
 	template <class Archive>
 	void serialize(Archive& archive)
 	{
-		archive(place1, place2, grip1, grip2, area, state, force, opening, slip, openingDamage, slipDamage);
+		archive(place1, place2, grip1, grip2, area, state, force, slip, openingDamage, slipDamage);
 	}
 	void forgetCrack(double share) // of a crack that does not count yet
 	{
-		for (double* value : {&opening, &slip, &openingDamage, &slipDamage})
+		for (double* value : {&slip, &openingDamage, &slipDamage})
 			*value *= 1 - share;
 	}
 };

@@ -157,6 +157,7 @@ struct Impact {
 struct StepReport {
 	int substeps {0}, events {0}, sweeps {0}, factorisations {0};
 	int unlocalised {0};     // points that closed beyond mostEvents
+	int unsettled {0};       // joints whose mortar may have given way, which the solves of the step have not settled
 	double residual {0};     // largest of the solves, m/s
 	double created {0};      // J, more than round-off and the error of a sound step can make of nothing
 	double deepest {0};      // m, of a block in another, where no sound step leaves it so deep
@@ -173,6 +174,7 @@ struct StepReport {
 		sweeps += other.sweeps;
 		factorisations += other.factorisations;
 		unlocalised += other.unlocalised;
+		unsettled += other.unsettled;
 		residual = std::max(residual, other.residual);
 		created += other.created;
 		deepest = std::max(deepest, other.deepest);

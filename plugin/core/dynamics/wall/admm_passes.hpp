@@ -41,6 +41,8 @@ MASONRY_INLINE const Lanes* pullOf(const Strength<K>* strength, int g, int k)
 	return strength ? &strength[g].pull[k] : nullptr;
 }
 
+constexpr double farResistance = 4; // factor by which R of mortar may differ from what it should be. Smaller: more factorisations
+
 // R by load.
 template <class K>
 MASONRY_INLINE Lanes resistanceOf(const PointLanes<K>& p, const Lanes& filteredImpulse, const Step& step)
@@ -48,15 +50,29 @@ MASONRY_INLINE Lanes resistanceOf(const PointLanes<K>& p, const Lanes& filteredI
 	const Lanes load = filteredImpulse / (p.massN * step.fall), r = larger(step.softness / (all(1) + load), all(step.minSoftness));
 	return (0.5 * r) * (p.massN + p.massT) / (p.massN * p.massT);
 }
-// The same, where sound mortar holds some lanes.
+// The same, where sound mortar holds some lanes. Where it gives way, R is the speed over the impulse.
 template <class K, bool bonded>
-MASONRY_INLINE Lanes resistanceOf(const PointLanes<K>& p, const Lanes& filteredImpulse, const Step& step, const Lanes* pull)
+MASONRY_INLINE Lanes resistanceOf(const PointLanes<K>& p, const PointState<K>& state, const Step& step, const Lanes* pull)
 {
 	if constexpr (!bonded)
-		return resistanceOf<K>(p, filteredImpulse, step);
-	else
-		return select(*pull > 0, all(0.5 * step.soundSoftness) * (p.massN + p.massT) / (p.massN * p.massT),
-		              resistanceOf<K>(p, filteredImpulse, step));
+		return resistanceOf<K>(p, state.filteredImpulse, step);
+	else {
+		const Lanes unit = 0.5 * (p.massN + p.massT) / (p.massN * p.massT),
+		            gives = (size(state.zn) + size(state.zt)) / (*pull + size(state.pt));
+		return select(*pull > 0, smaller(larger(gives, step.soundSoftness * unit), step.softness * unit),
+		              resistanceOf<K>(p, state.filteredImpulse, step));
+	}
+}
+
+// Whether R is not what it should be.
+template <class K, bool bonded>
+MASONRY_INLINE Mask isOff(const PointLanes<K>& at, const PointState<K>& p, const Lanes& resistance, const Step& step, const Lanes* pull)
+{
+	const Lanes wanted = resistanceOf<K, bonded>(at, p, step, pull);
+	const Mask off = size(wanted - resistance) > step.follows * resistance;
+	if constexpr (bonded)
+		return *pull > 0 ? (wanted > farResistance * resistance) | (farResistance * wanted < resistance) : off;
+	return off;
 }
 
 // A look at the points sets these: a point in reach is not in A; the R of a point no longer follows its load.
@@ -82,12 +98,25 @@ MASONRY_INLINE Outdated takeGroups(const Pass<K>& pass)
 			const Mask in = penalty.stiffness > 0;
 			outdated.reached |= (at.massN > 0) & (at.gap + step.h * approach < needed * step.reach) & ~in;
 			if (step.compares)
-				outdated.loaded |= in & (at.massN > 0) &
-				                   (size(resistanceOf<K, bonded>(at, p.filteredImpulse, step, pullOf(strength, g, k)) -
-				                         penalty.resistance) > step.follows * penalty.resistance);
+				outdated.loaded |= in & (at.massN > 0) & isOff<K, bonded>(at, p, penalty.resistance, step, pullOf(strength, g, k));
 		}
 	}
 	return outdated;
+}
+
+// Whether sound mortar gives way where R is still that of mortar which bears.
+template <class K>
+MASONRY_INLINE Mask giveGroups(const Pass<K>& pass)
+{
+	const auto [groups, strength, states, penalties, results, begin, end, velocity, force, step] = pass;
+	Mask gives {};
+	for (int g = begin; g < end; ++g)
+		for (int k = 0; k < groups[g].count; ++k) {
+			const Penalty& penalty = penalties[g][k];
+			const Lanes &pull = strength[g].pull[k], wanted = resistanceOf<K, true>(groups[g].point[k], states[g][k], step, &pull);
+			gives |= (penalty.stiffness > 0) & (pull > 0) & (wanted > farResistance * penalty.resistance);
+		}
+	return gives;
 }
 
 template <class K, bool bonded>
@@ -101,7 +130,7 @@ MASONRY_INLINE void setPenalties(const Pass<K>& pass)
 			const PointLanes<K>& p = groups[g].point[k];
 			const Lanes approach = 2. * smaller(normalRate(v1, v2, p), none);
 			const Mask in = (p.massN > 0) & (p.gap + step.h * approach < step.reach) & (all(groups[g].count - k) > 0);
-			const Lanes resistance = in ? resistanceOf<K, bonded>(p, states[g][k].filteredImpulse, step, pullOf(strength, g, k)) : one;
+			const Lanes resistance = in ? resistanceOf<K, bonded>(p, states[g][k], step, pullOf(strength, g, k)) : one;
 			penalties[g][k] = {in ? resistance : none, in ? one / resistance : none};
 			results[g][k].inReach = in;
 		}

@@ -26,6 +26,8 @@ MASONRY_LANES void inertia(const std::vector<int>& members, const Lanes* velocit
 // No template is compiled for several vector widths.
 MASONRY_LANES void takePass(const Pass<Plane>& pass, Outdated& outdated) { outdated = takeGroups(pass); }
 MASONRY_LANES void takePass(const Pass<Space>& pass, Outdated& outdated) { outdated = takeGroups(pass); }
+MASONRY_LANES void givePass(const Pass<Plane>& pass, Mask& gives) { gives = giveGroups(pass); }
+MASONRY_LANES void givePass(const Pass<Space>& pass, Mask& gives) { gives = giveGroups(pass); }
 MASONRY_LANES void penaltyPass(const Pass<Plane>& pass) { setPenalties(pass); }
 MASONRY_LANES void penaltyPass(const Pass<Space>& pass) { setPenalties(pass); }
 MASONRY_LANES void startPass(const Pass<Plane>& pass) { startGroups(pass); }
@@ -111,7 +113,6 @@ bool AdmmSolver<K>::isOutdated(const Problem& problem, const AdmmSettings& setti
 template <class K>
 bool AdmmSolver<K>::isMortarOutdated(const Problem& problem, const AdmmSettings& settings, Results& results) const
 {
-	constexpr double far = 4;
 	const auto isSame = [](const Strength<K>& a, const Strength<K>& b) {
 		return std::equal(a.pull.begin(), a.pull.end(), b.pull.begin(),
 		                  [](const Lanes& x, const Lanes& y) { return bitsOf(x > 0) == bitsOf(y > 0); });
@@ -130,17 +131,27 @@ bool AdmmSolver<K>::isMortarOutdated(const Problem& problem, const AdmmSettings&
 		MortarRow<K>& row = results.mortar[r];
 		row.resistance = known[r].resistance;
 		const double change = row.wantedResistance(step) / row.resistance;
-		isFar |= change > far || change < 1 / far;
+		isFar |= change > farResistance || change < 1 / farResistance;
 	}
 	return isFar;
 }
 
 // The same, looked at after some iterations.
 template <class K>
-bool AdmmSolver<K>::isMortarFar(const Problem& problem, const AdmmSettings& settings, int iterations, Results& results) const
+bool AdmmSolver<K>::isMortarFar(const Problem& problem, const AdmmSettings& settings, int iterations, Results& results)
 {
 	constexpr int every = 20; // More: mortar that breaks in a step takes longer to let go
-	return !results.mortar.empty() && iterations % every == 0 && isMortarOutdated(problem, settings, results);
+	if (iterations % every != 0)
+		return false;
+	if (!results.mortar.empty() && isMortarOutdated(problem, settings, results))
+		return true;
+	if (!firstOf(problem.strength))
+		return false;
+	const Step step = stepOf(problem.step, settings, atRest);
+	Mask gives[Team::maxParts + 1] {};
+	problem.contacts.layout().allParts(
+	    [&](const Part& part, int number) { givePass(passOf(problem, part, step, results), gives[number]); });
+	return std::any_of(std::begin(gives), std::end(gives), [](const Mask& here) { return any(here); });
 }
 
 template <class K>

@@ -39,6 +39,8 @@
 //
 // Mortar (mortar_rows.hpp): points of rigid joints have a shifted cone and a small R; rows of those that crack are in A, and their laws are
 // taken in the same pass. Only impulses that miss the strength by a small share of it are good enough, where R is so small.
+// An impulse that stays at the strength gains a share R of its speed in an iteration: R of mortar that gives way is its speed over its
+// impulse, and is looked at every some iterations.
 //
 // An instant (StepContext::instant) is the same problem without forces: impacts with rows, and jumps of the base. Points in touch start as
 // ones that stick, z_t = 0: a base that jumps under a block which it only slides along is a solution too, and where nothing slips not the
@@ -114,7 +116,7 @@ private:
 	Pass<K> passOf(const Problem& problem, const Part& part, const Step& step, Results& results);
 	bool isOutdated(const Problem& problem, const AdmmSettings& settings, Results& results);
 	bool isMortarOutdated(const Problem& problem, const AdmmSettings& settings, Results& results) const;
-	bool isMortarFar(const Problem& problem, const AdmmSettings& settings, int iterations, Results& results) const;
+	bool isMortarFar(const Problem& problem, const AdmmSettings& settings, int iterations, Results& results);
 	void makeMatrix(const Problem& problem, const AdmmSettings& settings, Results& results);
 	void start(const Problem& problem, const AdmmSettings& settings, Results& results);
 	double iterate(const Problem& problem, const AdmmSettings& settings, int number, Results& results);

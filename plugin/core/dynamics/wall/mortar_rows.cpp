@@ -28,8 +28,8 @@ double tangential(const Values& values)
 template <class K>
 double MortarRow<K>::wantedResistance(const RowStep& step) const
 {
-	const double load = (std::abs(p[0]) + tangential(p)) / (massN * step.fall);
-	return std::max(step.softness / (1 + load), step.minSoftness) / massN;
+	const double load = (std::abs(p[0]) + tangential(p)) / (massN * step.fall), speed = (std::abs(z[0]) + tangential(z)) / step.fall;
+	return std::clamp(step.softness * (1 + speed) / (1 + load), step.minSoftness, step.softness) / massN;
 }
 
 template <class K>
@@ -170,14 +170,16 @@ void Mortar<K>::addRows(const RigidSystem<K>& s, const ContactSet<K>& c, const L
 			row.arms[r].arm[1] = speedArm(c.bodies(), joint.body2, axis, (r == 0 ? at2 : grip2) - pose2.position);
 			row.before[r] = row.arms[r].rate(before);
 			row.p[r] = h * point.force[r];
-			row.z[r] = row.u[r] = 0;
+			row.z[r] = row.before[r];
+			row.u[r] = 0;
 		}
 		row.massN = 1 / row.arms[0].perMass(c.bodies().velocity());
 		row.friction = joint.law.friction;
 		row.openingRate = joint.law.openingRate();
 		row.slipRate = joint.law.slipRate();
-		const double beyond = axes.row(0).dot(at2 - at1) - point.state.crack, most = h * point.area * point.state.strength();
-		row.bias = (beyond > 0 ? pullBack : 1) * beyond / h;
+		const double most = h * point.area * point.state.strength();
+		row.beyond = axes.row(0).dot(at2 - at1) - point.state.crack;
+		row.bias = (row.beyond > 0 ? pullBack : 1) * row.beyond / h;
 		row.bound = row.strength = {most * joint.law.tensileStrength, most * joint.law.cohesion};
 		row.tension = row.p[0];
 		rows.push_back(row);
@@ -257,7 +259,6 @@ MortarWork Mortar<K>::finish(RigidSystem<K>& s, ContactSet<K>& c, const std::vec
 			continue;
 		}
 		grows[row.joint] = 1;
-		point.opening += opening;
 		point.slip += slip;
 		// Corners that are pressed while a crack is stopped take their part of the pull.
 		double pull = -row.p[0];
@@ -269,7 +270,7 @@ MortarWork Mortar<K>::finish(RigidSystem<K>& s, ContactSet<K>& c, const std::vec
 		const double damage = point.openingDamage + point.slipDamage;
 		if (!(damage > 0) || (point.state.spent == 0 && damage < counts))
 			continue;
-		point.state.crack += point.opening;
+		point.state.crack += std::max(0., row.beyond + h * row.u[0]);
 		point.state.slid += point.slip;
 		work.crack += point.area * addDamage(joint.law, point.state, point.openingDamage, point.slipDamage);
 		point.forgetCrack(1);

@@ -65,6 +65,7 @@ struct MortarRow {
 	double friction;
 	double openingRate, slipRate;   // dx per opening and per slip, 1/m
 	std::array<double, 2> strength; // tension and cohesion at the start of the step, N s
+	double beyond;                  // gap - d, m
 	double bias;                    // b, m/s
 	Values before;                  // u before the step, m/s
 	double resistance {0};          // R, 1/kg

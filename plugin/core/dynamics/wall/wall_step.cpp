@@ -67,6 +67,7 @@ double WallStep<K>::advancePart(RigidSystem<K>& s, double h, bool divisible)
 		contacts.placeFriction(s, h, settings.solver.refactorTime * step.rocking); // when R follows the loads
 	takeInstants(s, step);
 	const double missed = report.velocityResidual;
+	const int unsettled = report.unsettled;
 	CappedStatus status = solveStep(s, step);
 	if (const int parts = divisible && !step.stands && results.spins.empty()
 	                          ? landingParts<K>(contacts.bodies().velocity(), loads, results.velocity, step.fall, settings.solver.small)
@@ -75,6 +76,7 @@ double WallStep<K>::advancePart(RigidSystem<K>& s, double h, bool divisible)
 		h /= parts;
 		step = StepContext(scales, h);
 		report.velocityResidual = missed;
+		report.unsettled = unsettled;
 		pulses.takeBack();
 		ledger.takeBack();
 		contacts.clearOpen();
@@ -129,25 +131,35 @@ CappedStatus WallStep<K>::solveMortar(RigidSystem<K>& s, AdmmProblem<K> problem)
 {
 	constexpr int maxTrials = 8; // more in the next step
 	constexpr double longer = 10;
+	int unsettled = 0;
 	const double h = problem.step.h, tolerated = settings.solver.tolerance * problem.step.fall;
+	const double missed = report.velocityResidual;
 	CappedStatus status;
+	std::vector<int> yielding;
+	const auto solveAgain = [&](const AdmmSettings& with) {
+		report.velocityResidual = missed;
+		status = solve(s, problem, with);
+		yielding = mortar.yielding(s, contacts, ledger.velocityBefore(), results.velocity, h, 1);
+		return status.residual > tolerated;
+	};
 	for (int trial = 0; trial < maxTrials; ++trial) {
 		mortar.begin(s, contacts, ledger.velocityBefore(), h);
 		problem.mortar = mortar.rows;
 		problem.strength = &mortar.strength;
-		status = solve(s, problem, settings.solver);
-		std::vector<int> yielding = mortar.yielding(s, contacts, ledger.velocityBefore(), results.velocity, h, 1);
-		if (!yielding.empty() && status.residual > tolerated) {
+		bool isMissed = solveAgain(settings.solver);
+		if (isMissed && !yielding.empty()) {
 			AdmmSettings more = settings.solver;
 			more.iterations = int(longer * more.iterations);
-			status = solve(s, problem, more);
-			yielding = mortar.yielding(s, contacts, ledger.velocityBefore(), results.velocity, h,
-			                           status.residual > tolerated ? 1 / Mortar<K>::deadZone : 1);
+			isMissed = solveAgain(more);
 		}
+		unsettled = isMissed ? int(yielding.size()) : 0;
+		if (isMissed)
+			yielding = mortar.yielding(s, contacts, ledger.velocityBefore(), results.velocity, h, 1 / Mortar<K>::deadZone);
 		if (yielding.empty())
 			break;
 		mortar.letGo(s, contacts, yielding, h);
 	}
+	report.unsettled += unsettled;
 	return status;
 }
 

@@ -30,7 +30,7 @@ def bond(ids=None, material=None, joints="all"):
     """Bonds the joints of blocks that touch now, as they are, without stress: what the blocks weigh stays on the joints. Returns the number of joints.
 
     ids         of blocks and bases, a list: joints of which both bodies are named; None: all
-    material    a JointMat. Stiffness (compliant joints) and friction angle that it does not give are those of the joint
+    material    a JointMat. Friction angle, and stiffness with model='compliant', that it does not give are those of the joint
     joints      'all', 'bed' or 'head': head joints have upright faces
 
     Raises ValueError where no two of the bodies touch. The scene must have its engines, of model='compliant' or of method='wall'; the bonds act from the next step on. A joint that has been bonded before gets new mortar."""
