@@ -89,7 +89,7 @@ struct JointContact {
 	double normalStiffness() const { return law.normalStiffness * stiffnessArea(); } // of the closed face, N/m
 	double shearStiffness(int i) const { return law.shearStiffness * stiffnessArea() * patch.points[i].weight; }
 	PointValues springForces(const PointValues& depths) const; // N_i at these depths (m), N
-	// d_i at which the springs bear these forces, where they do not vanish, m.
+	// d_i at which the springs bear these forces, m; 0 where they vanish. Points without weight bear none.
 	PointValues depthsFor(const PointValues& forces) const;
 	double normalEnergy() const;             // stored by the normal springs now, J
 	double dampingNormal(double mass) const; // c_n of a pair of that reduced mass, N s/m
