@@ -85,7 +85,8 @@ PointValues JointContact::depthsFor(const PointValues& forces) const
 		total += force;
 	PointValues depths(size());
 	for (int i = 0; i < size(); ++i)
-		depths[i] = (forces[i] / patch.points[i].weight - (1 - r) * total) / (r * k);
+		if (forces[i] > 0)
+			depths[i] = (forces[i] / patch.points[i].weight - (1 - r) * total) / (r * k);
 	return depths;
 }
 

@@ -91,7 +91,7 @@ struct JointContact {
 	// What a face of the stiffness k gives to its points `among`, w_i (r k x_i + (1 - r) sum), and zero to the others.
 	PointValues shared(double k, const PointValues& x, const PerPoint<bool>& among) const;
 	PointValues springForces(const PointValues& depths) const; // N_i at these depths (m), N
-	// d_i at which the springs bear these forces, where they do not vanish, m.
+	// d_i at which the springs bear these forces, m; 0 where they vanish. Points without weight bear none.
 	PointValues depthsFor(const PointValues& forces) const;
 	double normalEnergy() const;             // stored by the normal springs now, J
 	double dampingNormal(double mass) const; // c_n of a pair of that reduced mass, N s/m

@@ -1,5 +1,7 @@
 #include "dynamics/compliant/settling.hpp"
+#include "impact/impulse_problem.hpp" // axesAlong
 #include "tolerances.hpp"
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -78,6 +80,82 @@ void hold(JointSystem& s)
 		holdForces(contact);
 }
 
+// Returns forces with the sum and the first moments of those given, shared as springs do: in equilibrium they store as little as they can,
+// sum F_i^2 / w_i, so that
+//     F_i = w_i (sum F / W + sum F (x - c)^T M^-1 (x_i - c)),    W = sum w > 0,  c = sum w x / W,  M = sum w (x - c) (x - c)^T.
+// Where the places lie in a line, M has an inverse along it only.
+PerPoint<Vector3> leastForces(const PointValues& weights, const PerPoint<Vector2>& places, const PerPoint<Vector3>& given)
+{
+	constexpr double line = 1e-6; // squared width relative to squared length, by weight. Larger: faces so narrow bear no moment across
+	double weight = 0;
+	Vector3 force = Vector3::Zero();
+	Vector2 centre = Vector2::Zero();
+	for (size_t i = 0; i < given.size(); ++i) {
+		weight += weights[i];
+		force += given[i];
+		centre += weights[i] * places[i];
+	}
+	centre /= weight;
+	Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
+	Eigen::Matrix<double, 3, 2> moment = Eigen::Matrix<double, 3, 2>::Zero(), slope = moment;
+	for (size_t i = 0; i < given.size(); ++i) {
+		const Vector2 arm = places[i] - centre;
+		second += weights[i] * arm * arm.transpose();
+		moment += given[i] * arm.transpose();
+	}
+	const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(second);
+	for (int k = 0; k < 2; ++k)
+		if (axes.eigenvalues()[k] > line * axes.eigenvalues()[1])
+			slope += moment * axes.eigenvectors().col(k) * axes.eigenvectors().col(k).transpose() / axes.eigenvalues()[k];
+	PerPoint<Vector3> forces;
+	for (size_t i = 0; i < given.size(); ++i)
+		forces.push_back(weights[i] * (force / weight + slope * (places[i] - centre)));
+	return forces;
+}
+
+// Rigid bodies do not say how the points [first, last) of a face share its force. An even share would press in a corner that has just
+// appeared on a side, of next to no weight, without limit. Points that would pull bear nothing, nor do those without weight.
+void shareBySprings(const JointContact& contact, std::vector<HeldPoint>::iterator first, std::vector<HeldPoint>::iterator last)
+{
+	const Eigen::Matrix<double, 2, 3> tangents = axesAlong(contact.patch.normal).bottomRows<2>();
+	PointValues weights;
+	PerPoint<Vector2> places;
+	PerPoint<Vector3> given;
+	for (auto p = first; p != last; ++p) {
+		weights.push_back(contact.patch.points[p->point].weight);
+		places.push_back(tangents * (contact.position(p->point) - contact.position(first->point)));
+		given.push_back(p->force);
+		p->force.setZero();
+	}
+	const auto bears = [](double weight) { return weight > 0; };
+	for (bool pulls = true; pulls && std::any_of(weights.begin(), weights.end(), bears);) {
+		const auto forces = leastForces(weights, places, given);
+		pulls = false;
+		for (size_t i = 0; i < given.size(); ++i) {
+			first[i].force = forces[i];
+			if (bears(weights[i]) && !(contact.patch.normal.dot(forces[i]) > 0)) {
+				weights[i] = 0;
+				pulls = true;
+			}
+		}
+	}
+}
+
+// Returns the points that press, with the forces that springs have under the same load of each contact.
+std::vector<HeldPoint> pressingPoints(const JointSystem& s, const std::vector<HeldPoint>& held)
+{
+	const auto presses = [&s](const HeldPoint& p) { return s.contacts[p.contact].patch.normal.dot(p.force) > 0; };
+	std::vector<HeldPoint> points;
+	std::copy_if(held.begin(), held.end(), std::back_inserter(points), presses);
+	for (auto first = points.begin(); first != points.end();) {
+		const auto last = std::find_if(first, points.end(), [&](const HeldPoint& p) { return p.contact != first->contact; });
+		shareBySprings(s.contacts[first->contact], first, last);
+		first = last;
+	}
+	points.erase(std::remove_if(points.begin(), points.end(), [&](const HeldPoint& p) { return !presses(p); }), points.end());
+	return points;
+}
+
 // Bodies move (least motion, whatever the masses) until the springs of the points bear their forces. Returns the deepest compression.
 double press(JointSystem& s, const std::vector<HeldPoint>& points)
 {
@@ -122,9 +200,7 @@ void settle(JointSystem& s, const std::vector<HeldPoint>& held, double most)
 	const double stored = storedEnergy(s);
 	const Bodies<Space> before = s.bodies;
 	const std::vector<JointContact> contactsBefore = s.contacts;
-	std::vector<HeldPoint> points;
-	std::copy_if(held.begin(), held.end(), std::back_inserter(points),
-	             [&](const HeldPoint& p) { return s.contacts[p.contact].patch.normal.dot(p.force) > 0; });
+	std::vector<HeldPoint> points = pressingPoints(s, held);
 	const double deepest = press(s, points);
 	double work = 0; // of the loads
 	for (size_t b = 0; b < s.bodies.size(); ++b)
