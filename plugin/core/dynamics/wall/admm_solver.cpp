@@ -1,5 +1,5 @@
 #include "dynamics/wall/admm_solver.hpp"
-#include "tolerances.hpp"
+#include "dynamics/wall/admm_step.hpp"
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -34,35 +34,6 @@ MASONRY_LANES void startPass(const Pass<Plane>& pass) { startGroups(pass); }
 MASONRY_LANES void startPass(const Pass<Space>& pass) { startGroups(pass); }
 MASONRY_LANES void lawPass(const Pass<Plane>& pass, Lanes& worst) { passGroups(pass, worst); }
 MASONRY_LANES void lawPass(const Pass<Space>& pass, Lanes& worst) { passGroups(pass, worst); }
-
-RowStep rowStepOf(const StepContext& c, const AdmmSettings& a)
-{
-	return {c.h, c.fall, a.softness, a.minSoftness, a.relaxation, a.boundShare};
-}
-
-Step stepOf(const StepContext& c, const AdmmSettings& a, bool atRest)
-{
-	const double filter = a.filterTime * c.rocking;
-	return {c.h,
-	        1 / c.h,
-	        c.fall,
-	        c.instant    ? 0
-	        : filter > 0 ? -std::expm1(-c.h / filter)
-	                     : 1,
-	        a.reach * c.length,
-	        a.leftPenetration * c.length,
-	        atRest ? a.restSoftness : a.softness,
-	        atRest ? a.restFollows : a.follows,
-	        a.minSoftness,
-	        a.relaxation,
-	        a.boundShare,
-	        c.instant ? 0 : a.pullBack,
-	        a.soundSoftness,
-	        a.tolerance * c.fall / a.soundShare,
-	        c.instant ? tolerance::wall::touching * c.length : -farAway,
-	        a.strictForces,
-	        false};
-}
 
 } // namespace
 
@@ -300,6 +271,36 @@ void beginResults(const AdmmProblem<K>& problem, AdmmResults<K>& results)
 				p.pn = all(0), p.pt *= all(0);
 }
 
+// Iterations of a step, beside the reserve: more where blocks are few.
+template <class K>
+double AdmmSolver<K>::usualIterations(const AdmmSettings& settings) const
+{
+	return settings.iterations * std::max(1., double(settings.small) * packs<K> / std::max<size_t>(1, matrix.freePacks().size()));
+}
+
+// Whether the solve has to go on from here, and may.
+template <class K>
+bool AdmmSolver<K>::goesOn(const StepContext& step, const AdmmSettings& settings, const SolverStatus& status) const
+{
+	const double iterations = usualIterations(settings), tolerated = settings.tolerance * step.fall;
+	if (step.instant) {
+		const bool isEarly = status.iterations < settings.ofInstant * (iterations / settings.iterations);
+		const double enough = std::max(tolerated, step.speed * (isEarly ? settings.instantTolerance : settings.instantEnough));
+		return status.residual > enough && status.iterations < settings.maxOfInstant;
+	}
+	const bool isLagging = !atRest && status.iterations < settings.least;
+	if (!(status.residual > (isLagging ? settings.early * tolerated : tolerated)))
+		return false;
+	// Residual, relative to the speed that gravity gives in a step, above which a step takes up to ten times as many iterations. Larger:
+	// stuck blocks that snap under a load are thrown; smaller: walls that are shaken cost more (docs/tuning.md).
+	constexpr double rough = 0.3;
+	const int longest = int(10 * iterations);
+	const int most = cold || settings.strictForces         ? settings.first
+	                 : status.residual > rough * step.fall ? longest
+	                                                       : std::min(int(iterations + saved), longest);
+	return status.iterations < most;
+}
+
 template <class K>
 SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& settings, Results& results)
 {
@@ -318,26 +319,6 @@ SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& se
 		refactor();
 	prepareRows(problem, status.factorisations > 0);
 	start(problem, settings, results);
-	const double share = std::max(1., double(settings.small) * packs<K> / std::max<size_t>(1, matrix.freePacks().size())),
-	             iterations = settings.iterations * share, tolerated = settings.tolerance * step.fall;
-	const auto enough = [&] {
-		if (step.instant)
-			return std::max(tolerated, step.speed * (status.iterations < settings.ofInstant * share ? settings.instantTolerance
-			                                                                                        : settings.instantEnough));
-		const bool isLagging = !atRest && status.iterations < settings.least;
-		return isLagging ? settings.early * tolerated : tolerated;
-	};
-	// Residual, relative to the speed that gravity gives in a step, above which a step takes up to ten times as many iterations. Larger:
-	// stuck blocks that snap under a load are thrown; smaller: walls that are shaken cost more (docs/tuning.md).
-	constexpr double rough = 0.3;
-	const int longest = int(10 * iterations);
-	const auto most = [&] {
-		if (step.instant)
-			return settings.maxOfInstant;
-		if (cold || settings.strictForces)
-			return settings.first;
-		return status.residual > rough * step.fall ? longest : std::min(int(iterations + saved), longest);
-	};
 	constexpr double diverging = 10;
 	constexpr int untilLoaded = 100;          // iterations of a cold start, after which R follows the loads that they have found
 	constexpr int looks[] {20, 50, 300, 600}; // the same of an instant (docs/tuning.md, impacts)
@@ -350,7 +331,7 @@ SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& se
 		if (isLoaded)
 			startMeans<K>(results.states, step.instant ? step.fall / step.speed : 1);
 		ofInstant |= isLoaded && step.instant;
-		const bool isTooStiff = atRest && status.iterations >= settings.restMost && status.residual > tolerated;
+		const bool isTooStiff = atRest && status.iterations >= settings.restMost && status.residual > settings.tolerance * step.fall;
 		atRest &= !isTooStiff;
 		status.leftRest |= isTooStiff;
 		if (isLoaded || isTooStiff || isMortarFar(problem, settings, status.iterations, results) || status.residual > diverging * least) {
@@ -359,8 +340,9 @@ SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& se
 			least = status.residual;
 		}
 		least = std::min(least, status.residual);
-	} while (status.residual > enough() && status.iterations < most());
+	} while (goesOn(step, settings, status));
 	if (!step.instant) {
+		const double iterations = usualIterations(settings);
 		saved = cold ? 0 : std::clamp(saved + iterations - status.iterations, 0., settings.reserve * iterations);
 		cold = false;
 	}

@@ -117,6 +117,8 @@ private:
 	bool isOutdated(const Problem& problem, const AdmmSettings& settings, Results& results);
 	bool isMortarOutdated(const Problem& problem, const AdmmSettings& settings, Results& results) const;
 	bool isMortarFar(const Problem& problem, const AdmmSettings& settings, int iterations, Results& results);
+	double usualIterations(const AdmmSettings& settings) const;
+	bool goesOn(const StepContext& step, const AdmmSettings& settings, const SolverStatus& status) const;
 	void makeMatrix(const Problem& problem, const AdmmSettings& settings, Results& results);
 	void start(const Problem& problem, const AdmmSettings& settings, Results& results);
 	double iterate(const Problem& problem, const AdmmSettings& settings, int number, Results& results);
