@@ -291,14 +291,7 @@ bool AdmmSolver<K>::goesOn(const StepContext& step, const AdmmSettings& settings
 	const bool isLagging = !atRest && status.iterations < settings.least;
 	if (!(status.residual > (isLagging ? settings.early * tolerated : tolerated)))
 		return false;
-	// Residual, relative to the speed that gravity gives in a step, above which a step takes up to ten times as many iterations. Larger:
-	// stuck blocks that snap under a load are thrown; smaller: walls that are shaken cost more (docs/tuning.md).
-	constexpr double rough = 0.3;
-	const int longest = int(10 * iterations);
-	const int most = cold || settings.strictForces         ? settings.first
-	                 : status.residual > rough * step.fall ? longest
-	                                                       : std::min(int(iterations + saved), longest);
-	return status.iterations < most;
+	return status.iterations < (cold || settings.strictForces ? settings.first : int(std::min(iterations + saved, 10 * iterations)));
 }
 
 template <class K>
