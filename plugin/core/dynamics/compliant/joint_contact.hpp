@@ -88,7 +88,7 @@ struct JointContact {
 	double stiffnessArea() const;                                                    // m^2, what the stiffness per area is multiplied with
 	double normalStiffness() const { return law.normalStiffness * stiffnessArea(); } // of the closed face, N/m
 	double shearStiffness(int i) const { return law.shearStiffness * stiffnessArea() * patch.points[i].weight; }
-	// What a face of the stiffness k gives to its points `among`, w_i (r k x_i + (1 - r) sum), and zero to the others.
+	// A face of the stiffness k gives its points `among` w_i (r k x_i + (1 - r) sum), and the others zero.
 	PointValues shared(double k, const PointValues& x, const PerPoint<bool>& among) const;
 	PointValues springForces(const PointValues& depths) const; // N_i at these depths (m), N
 	// d_i at which the springs bear these forces, m; 0 where they vanish. Points without weight bear none.

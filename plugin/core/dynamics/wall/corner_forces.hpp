@@ -1,5 +1,5 @@
 #pragma once
-// What a joint that yields bears, as forces of its corners alone: a joint that they could bear is rigid again.
+// A joint that yields bears this as forces of its corners alone: a joint that they could bear is rigid again.
 #include "dynamics/wall/mortar_rows.hpp"
 
 namespace masonry::wall {

@@ -11,7 +11,7 @@ namespace masonry::wall {
 
 namespace {
 
-// What all joints with mortar can bear, N.
+// All joints with mortar can bear this together, N.
 template <class K>
 double strengthOf(const RigidSystem<K>& s)
 {

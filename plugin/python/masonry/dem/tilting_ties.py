@@ -6,7 +6,7 @@ import math
 from masonry.dem.ties import ties
 from yade import Vector3
 
-# What a step changes of a tie.
+# A step changes these values of a tie.
 _STATE = ("length", "broken", "brokenAt", "force", "extension", "energy")
 
 
