@@ -83,7 +83,7 @@ void hold(JointSystem& s)
 // Returns forces with the sum and the first moments of those given, shared as springs do: in equilibrium they store as little as they can,
 // sum F_i^2 / w_i, so that
 //     F_i = w_i (sum F / W + sum F (x - c)^T M^-1 (x_i - c)),    W = sum w > 0,  c = sum w x / W,  M = sum w (x - c) (x - c)^T.
-// Where the places lie in a line, M has an inverse along it only.
+// If the places lie in a line, M is inverted along it only.
 PerPoint<Vector3> leastForces(const PointValues& weights, const PerPoint<Vector2>& places, const PerPoint<Vector3>& given)
 {
 	constexpr double line = 1e-6; // squared width relative to squared length, by weight. Larger: faces so narrow bear no moment across

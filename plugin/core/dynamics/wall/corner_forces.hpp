@@ -7,7 +7,7 @@ namespace masonry::wall {
 template <class K>
 using Shear = Eigen::Matrix<double, K::rows - 1, 1>; // along the tangents, N s
 
-// Of a corner, along the tangents of its joint, whose axes these are.
+// Returns the shear of a corner along the tangents of its joint, whose axes these are.
 Shear<Plane> shearOf(const ContactSet<Plane>& contacts, const MortarCorner& corner, const Eigen::Matrix2d& axes);
 Shear<Space> shearOf(const ContactSet<Space>& contacts, const MortarCorner& corner, const Matrix3& axes);
 

@@ -32,7 +32,7 @@ struct MortarCorner {
 };
 using MortarCorners = PerPoint<MortarCorner>;
 
-// Of a pair; empty: it is not among the lanes.
+// Returns the corners of a pair, none if it is not among the lanes.
 template <class K>
 MortarCorners cornersOf(const ContactSet<K>& contacts, int pair);
 

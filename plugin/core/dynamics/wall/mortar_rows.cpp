@@ -53,7 +53,8 @@ bool MortarRow<K>::slides() const
 	return tangential(p) >= (1 - roundOff) * slipBound();
 }
 
-// The mean of the velocities, less the way to the largest opening so far, on which a crack opens freely.
+// The mean of the velocities, less the way to the largest opening so far, on which a crack opens freely. z has the part of an opening that
+// is pulled back: so the dead zone by which a rigid joint has opened is spent too, once its points bear.
 template <class K>
 double MortarRow<K>::opening(double h) const
 {
@@ -105,7 +106,7 @@ void MortarRow<K>::push(const LaneArray& velocity, LaneArray& momentum) const
 		arms[k].push(p[k] + (z[k] - u[k] - (k == 0 ? bias : 0)) / resistance, velocity, momentum);
 }
 
-// Of the pairs of a joint the first that meets.
+// Takes the first pair of each joint that meets.
 template <class K>
 void Mortar<K>::find(const RigidSystem<K>& s, const ContactSet<K>& c)
 {

@@ -10,7 +10,7 @@ from masonry.dem.checks import floating_and_supports, listed
 from masonry.motions import LONGEST_STEP
 from yade import O, wrapper
 
-# What is no slip of units: the longest free block (mm for m), m; densities, kg/m^3, of which light timber has 300, and stone 2.7 in g/cm^3 and 27 in kN/m^3; peaks of
+# These are no slips of units: the longest free block (mm for m), m; densities, kg/m^3, of which light timber has 300, and stone 2.7 in g/cm^3 and 27 in kN/m^3; peaks of
 # records (g, cm/s^2), m/s^2.
 _LONGEST = 50
 _DENSITIES = 100, 20000

@@ -1,6 +1,8 @@
 #pragma once
 // Blocks with mortar for the tests, 0.1 m deep in the plane.
 #include "core/dynamics/wall/wall_rig.hpp"
+#include "number_archive.hpp"
+#include <catch.hpp>
 
 namespace rig {
 
@@ -117,5 +119,35 @@ struct BondedOf : SceneOf<K> {
 		return sum;
 	}
 };
+
+// The scene is saved, and goes on as that which is loaded.
+template <class K>
+void goesOnWithItsBits(BondedOf<K>& s, int steps)
+{
+	NumberWriter saved;
+	saved(s.system.mortar);
+	s.step.serialize(saved, s.system);
+	RigidSystem<K> system = s.system;
+	system.mortar.clear();
+	auto near = s.near;
+	wall::WallStep<K> other;
+	NumberReader loaded(saved.numbers);
+	loaded(system.mortar);
+	other.serialize(loaded, system);
+	CHECK(loaded.isAtEnd());
+	for (int k = 0; k < steps; ++k) {
+		s.advance(1e-3);
+		near.update(system);
+		other.advance(system, 1e-3);
+	}
+	CHECK(s.system.crackDissip == system.crackDissip);
+	for (size_t j = 0; j < system.mortar.size(); ++j)
+		CHECK(s.system.mortar[j].damage() == system.mortar[j].damage());
+	for (size_t b = 0; b < system.bodies.size(); ++b) {
+		CAPTURE(b);
+		CHECK(s.system.bodies[b].velocity == system.bodies[b].velocity);
+		CHECK(s.system.bodies[b].pose.position == system.bodies[b].pose.position);
+	}
+}
 
 } // namespace rig

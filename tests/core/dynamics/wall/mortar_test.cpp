@@ -1,6 +1,5 @@
 // Mortar between rigid blocks: closed forms of single joints, and structures below their strength.
 #include "core/dynamics/wall/mortar_rig.hpp"
-#include "number_archive.hpp"
 #include <catch.hpp>
 
 using namespace masonry;
@@ -118,30 +117,7 @@ TEST_CASE("a wall that cracks goes on with the same bits after loading")
 	s.drive(motion);
 	s.run(0.15, h);
 	REQUIRE(s.damage() > 0.01);
-	NumberWriter saved;
-	saved(s.system.mortar);
-	s.step.serialize(saved, s.system);
-	RigidSystem<Plane> system = s.system;
-	system.mortar.clear();
-	auto near = s.near;
-	wall::WallStep<Plane> other;
-	NumberReader loaded(saved.numbers);
-	loaded(system.mortar);
-	other.serialize(loaded, system);
-	CHECK(loaded.isAtEnd());
-	for (int k = 0; k < 100; ++k) {
-		s.advance(h);
-		near.update(system);
-		other.advance(system, h);
-	}
-	CHECK(s.system.crackDissip == system.crackDissip);
-	for (size_t j = 0; j < system.mortar.size(); ++j)
-		CHECK(s.system.mortar[j].damage() == system.mortar[j].damage());
-	for (size_t b = 0; b < system.bodies.size(); ++b) {
-		CAPTURE(b);
-		CHECK(s.system.bodies[b].velocity == system.bodies[b].velocity);
-		CHECK(s.system.bodies[b].pose.position == system.bodies[b].pose.position);
-	}
+	goesOnWithItsBits(s, 100);
 }
 
 TEST_CASE("a squat wall that would slide stands below its strength, and cracks above it")
