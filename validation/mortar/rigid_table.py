@@ -133,7 +133,7 @@ def a5_thrown(dt):
         steps(2)
         state.vel = (0, 0, math.sqrt(2 * ratio * energy / state.mass))
         steps(max(20, int(0.02 / dt)))
-        yield f"brick thrown with {ratio:g} G A: kinetic energy left, of G A", max(ratio - 0.999, 0), 0.5 * state.mass * state.vel.squaredNorm() / energy, 2e-2
+        yield f"brick thrown with {ratio:g} G A: kinetic energy spent, of G A", min(ratio, 0.999), ratio - 0.5 * state.mass * state.vel.squaredNorm() / energy, 2e-2
         yield "mean damage", min(ratio, 1), dem.damage()["damage"][0], 3e-2
 
 
@@ -239,8 +239,7 @@ def a12_symmetry(dt):
 
 
 # Rows that are known not to hold, and why they do not stands in the README.
-MISSED = ("cohesion at the slip G/c", "brick thrown with 1.1 G A", "brick thrown with 1.5 G A", "wall of 6 x 3", "difference of the mean damage", "wall of 4 x 3, 3 g, 4 Hz: energy made",
-          "slip equal to opening")
+MISSED = "cohesion at the slip G/c", "wall of 6 x 3, 5 g, 3 Hz: mean damage", "difference of the mean damage"
 CASES = [a1_pull, a2_couplet, a3_wrench, a5_thrown, a6_parapet, a7_between_supports, a8_sound, a9_steps, a10_mixed, a12_symmetry]
 
 
