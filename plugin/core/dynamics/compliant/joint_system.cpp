@@ -79,8 +79,8 @@ Vector3 opening(const JointSystem& s, const JointContact& contact, int i)
 		return n;
 	const PatchFeature& faces = contact.patch.feature;
 	const bool first = faces.kind == PatchKind::Face1;
-	const Vector3 incident =
-	    s.bodies[first ? contact.body2 : contact.body1].pose.orientation * Vector3::Unit((first ? faces.feature2 : faces.feature1) / 2);
+	const RigidBody<Space>& body = s.bodies[first ? contact.body2 : contact.body1];
+	const Vector3 incident = body.pose.orientation * faceNormal(body, first ? faces.feature2 : faces.feature1);
 	return incident / incident.dot(n);
 }
 
