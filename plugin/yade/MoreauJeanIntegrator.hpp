@@ -2,6 +2,7 @@
 
 #include "Ip2_BlockMat_BlockMat_BlockPhys.hpp"
 #include "dynamics/model/energy_errors.hpp"
+#include "impact_columns.hpp"
 #include "rigid_memory.hpp"
 
 #include <core/GlobalEngine.hpp>
@@ -65,17 +66,7 @@ public:
 		((string, chosenModel, "", Attr::readonly, "'planar' or 'spatial', from the first step on."))
 		((string, reason, "", Attr::readonly, "Why this model was chosen."))
 		((Vector3r, along, Vector3r::Zero(), , "Planar model: the horizontal direction in the plane. If two planes are possible (one block, a stack), the one nearest to the value given before the first step is taken; (0, 0, 0) stands for x."))
-		((vector<Real>, impactTimes, , Attr::readonly, "Time of each impact [s], inside the step."))
-		((vector<int>, impactBlocks, , Attr::readonly, "Block that rocks, at each impact."))
-		((vector<int>, impactSupports, , Attr::readonly, "Body on which it rocks, at each impact."))
-		((vector<Real>, impactAsked, , Attr::readonly, "Restitution that was asked for; NaN: natural."))
-		((vector<Real>, impactBefore, , Attr::readonly, "Relative angular velocity before the impact [rad/s]."))
-		((vector<Real>, impactAfter, , Attr::readonly, "Relative angular velocity after the impact [rad/s]."))
-		((vector<Real>, impactEnergy, , Attr::readonly, "Kinetic energy lost at the impact [J]."))
-		((vector<Real>, impactApplication, , Attr::readonly, "Distance of the resultant impulse from the new pivot, inward positive [m]."))
-		((vector<Real>, impactFriction, , Attr::readonly, "Friction coefficient that the impact uses: tangential over normal impulse. If it equals that of the joint, the pivot has slipped; an impact without slip would need more."))
-		((vector<int>, impactSwitched, , Attr::readonly, "1: the block rocks on about the other pivot; 0: the joint came to rest."))
-		((vector<int>, impactCapped, , Attr::readonly, "1: the restitution that was asked for was not reached. It was lowered so that energy does not grow, or no value satisfies the laws."))
+		MASONRY_IMPACT_COLUMNS
 		((Real, frictDissip, 0, Attr::readonly, "Energy dissipated by friction so far [J]."))
 		((Real, impactDissip, 0, Attr::readonly, "Energy dissipated by impacts so far [J]. With method='wall' it is the remainder of the energy balance and includes numerical losses."))
 		((Real, baseWork, 0, Attr::readonly, "Work of the moved base on the blocks so far [J]."))

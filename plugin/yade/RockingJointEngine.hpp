@@ -5,6 +5,7 @@
 #include "JointMat.hpp"
 #include "compliant_scene.hpp"
 #include "dynamics/compliant/compliant_step.hpp"
+#include "impact_columns.hpp"
 #include "turning_bounds.hpp"
 #include <core/GlobalEngine.hpp>
 
@@ -32,17 +33,7 @@ public:
 		((vector<shared_ptr<Engine>>, ties, , Attr::triggerPostLoad, "Ties between blocks, or blocks and bases (BlockTie; dem.tie() makes them): springs of the explicit step, which counts their stiffness in its critical step. A `dead` one does not act."))
 		((Real, stepFraction, 0, , "Fraction of the critical time step from which O.dt was chosen. Where blocks come to touch in stiffer joints, O.dt is lowered to chosenTimeStep, with a warning. 0: O.dt was given by the user, and a step that would be unstable is refused."))
 		((bool, started, false, Attr::readonly, "Whether the bodies have been put in equilibrium on their joints."))
-		((vector<Real>, impactTimes, , Attr::readonly, "Time of each impact [s], inside the step."))
-		((vector<int>, impactBlocks, , Attr::readonly, "Block that rocks, at each impact."))
-		((vector<int>, impactSupports, , Attr::readonly, "Body on which it rocks, at each impact."))
-		((vector<Real>, impactAsked, , Attr::readonly, "Restitution that was asked for; NaN: natural."))
-		((vector<Real>, impactBefore, , Attr::readonly, "Relative angular velocity before the impact [rad/s]."))
-		((vector<Real>, impactAfter, , Attr::readonly, "Relative angular velocity after the impact [rad/s]."))
-		((vector<Real>, impactEnergy, , Attr::readonly, "Kinetic energy lost at the impact [J]."))
-		((vector<Real>, impactApplication, , Attr::readonly, "Distance of the resultant impulse from the new pivot, inward positive [m]."))
-		((vector<Real>, impactFriction, , Attr::readonly, "Friction coefficient that the impact uses: tangential over normal impulse. If it equals that of the joint, the pivot has slipped; an impact without slip would need more."))
-		((vector<int>, impactSwitched, , Attr::readonly, "1: the block rocks on about the other pivot; 0: the joint came to rest."))
-		((vector<int>, impactCapped, , Attr::readonly, "1: the restitution that was asked for was not reached. It was lowered so that energy does not grow, or no value satisfies the laws."))
+		MASONRY_IMPACT_COLUMNS
 		((Real, worstResidual, 0, Attr::readonly, "Largest residual of the impulse problems so far [m/s]; that of accelerations is multiplied by the time step."))
 		((long, failures, 0, Attr::readonly, "Number of impulse problems so far that missed their laws (residual above 1e-8 of their speed). One failure each is added when madeEnergy reaches 0.75 % or lostEnergy 5 % of turnedOver, and when blocks first press deeper into each other than 2 % of the smallest half size."))
 		((Real, madeEnergy, 0, Attr::readonly, "Energy that integration errors have added so far [J]; lost energy is not subtracted. Causes: a spring acts from the start of the step in which its point closes, or to the end of the step in which it opens; a corner that passes to another face, or becomes the new pivot, is suddenly deeper or stiffer. Use a smaller dt, a smaller penetration or rigid blocks to reduce it."))

@@ -11,6 +11,9 @@
 
 namespace yade {
 
+/// The numbers of a bond begin with that of their layout, to be changed with any list of members.
+constexpr Real bondLayout = -1;
+
 struct BondMemory {
 	std::shared_ptr<masonry::MortarBond> bond;
 
@@ -20,8 +23,9 @@ struct BondMemory {
 		vector<Real> values;
 		if constexpr (Archive::is_saving::value) {
 			masonry::NumberWriter writer;
+			Real first = bondLayout;
 			if (bond)
-				writer(*bond);
+				writer(first, *bond);
 			values = writer.numbers;
 		}
 		archive& boost::serialization::make_nvp("values", values);
@@ -38,7 +42,10 @@ private:
 		bond = std::make_shared<masonry::MortarBond>();
 		masonry::NumberReader reader(values);
 		try {
-			reader(*bond);
+			Real first = 0;
+			reader(first, *bond);
+			if (first != bondLayout || !reader.isAtEnd())
+				throw std::out_of_range("layout");
 		} catch (const std::exception&) {
 			throw std::runtime_error("The mortar of this simulation was saved by another version of yade-masonry: build the scene anew.");
 		}

@@ -1,6 +1,6 @@
 #pragma once
-// MoreauJeanIntegrator and RockingJointEngine have these attributes in common: impacts, one attribute a column (dem.impacts()), the order
-// of impacts, ties and energies.
+// MoreauJeanIntegrator and RockingJointEngine have these attributes in common, besides the columns of impact_columns.hpp: the order of
+// impacts, ties and energies.
 
 #include "BlockTie.hpp"
 #include "sentence.hpp"
@@ -10,37 +10,6 @@
 #include <utility>
 
 namespace yade {
-
-/// `ofJoint`: result of the law. energy: lost, J.
-template <class Engine, class JointResult>
-void addImpact(Engine& engine, Real time, int block, int support, Real asked, const JointResult& ofJoint, Real energy, bool switched,
-               bool capped)
-{
-	engine.impactTimes.push_back(time);
-	engine.impactBlocks.push_back(block);
-	engine.impactSupports.push_back(support);
-	engine.impactAsked.push_back(asked);
-	engine.impactBefore.push_back(ofJoint.before);
-	engine.impactAfter.push_back(ofJoint.after);
-	engine.impactEnergy.push_back(energy);
-	engine.impactApplication.push_back(ofJoint.application);
-	engine.impactFriction.push_back(ofJoint.frictionDemand);
-	engine.impactSwitched.push_back(switched);
-	engine.impactCapped.push_back(capped);
-}
-
-template <class... Results>
-void forget(Results&... results)
-{
-	((results = {}), ...);
-}
-
-template <class Engine>
-void forgetImpacts(Engine& engine)
-{
-	forget(engine.impactTimes, engine.impactBlocks, engine.impactSupports, engine.impactAsked, engine.impactBefore, engine.impactAfter,
-	       engine.impactEnergy, engine.impactApplication, engine.impactFriction, engine.impactSwitched, engine.impactCapped);
-}
 
 template <class Engine>
 void checkOrderAndTies(const Engine& engine)

@@ -75,7 +75,7 @@ struct RigidResults {
 	masonry::StepErrors errors;
 	RigidEnergies energies;
 	vector<masonry::Impact> impacts; // block and support by their ids
-	masonry::wall::AssemblyReport walls;
+	masonry::wall::Report walls;
 	int localisedBlocks = 0; // beside walls
 };
 

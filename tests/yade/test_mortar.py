@@ -117,6 +117,34 @@ def test_a_saved_wall_goes_on_with_the_same_bits(ending, tmp_path):
     assert np.array_equal(np.array(joint_engine().bondedState), state, equal_nan=True)
 
 
+def with_another_layout(row):
+    return re.sub(r"<item>-1\.0[\d.e+]*<", "<item>-9.0e+00<", row, count=1)
+
+
+def with_a_number_more(row):
+    count = int(re.search(r"<count>(\d+)", row)[1])
+    return row.replace(f"<count>{count}<", f"<count>{count + 1}<", 1).replace("</values>", "<item>0</item></values>")
+
+
+def without_a_number(row):
+    count = int(re.search(r"<count>(\d+)", row)[1])
+    return re.sub(r"<item>[^<]*</item>\s*</values>", "</values>", row.replace(f"<count>{count}<", f"<count>{count - 1}<", 1))
+
+
+@pytest.mark.parametrize("change", (with_another_layout, with_a_number_more, without_a_number))
+def test_mortar_that_another_version_has_saved_is_refused(change, tmp_path):
+    brick()
+    steps(10)
+    path = tmp_path / "brick.xml"
+    O.save(str(path))
+    O.reset()
+    text = path.read_text()
+    changed = re.sub(r"<bond>.*?</bond>", lambda found: change(found[0]), text, flags=re.DOTALL)
+    assert changed != text
+    path.write_text(changed)
+    refuses(lambda: O.load(str(path)), "mortar", "saved by another version of yade-masonry", kind=RuntimeError)
+
+
 def test_threads_give_the_same_bits():
     own, script = mortar_hash(), Path(__file__).with_name("mortar_hash.py")
     for threads in (1, 4):

@@ -12,15 +12,21 @@ CLOSE = 1e-3
 METHODS = ("wall", "localised")
 
 
-def ground(mu=2.0):
+def ground(mu=2.0, mortar=None):
     O.reset()
-    stone = dem.BlockMat(density=2000, frictionAngle=math.atan(mu), restitution=0)
+    bed = {"mortar": mortar} if mortar else {"restitution": 0}  # mortar has none
+    stone = dem.BlockMat(density=2000, frictionAngle=math.atan(mu), **bed)
     return dem.base((12, 4, 0.2), stone), stone
 
 
-def slender():
+def mortared(strength, length):
+    """A mortar with that tensile strength, Pa, whose cracks have let go after some times that length, m: fractureEnergy over tensileStrength."""
+    return dem.JointMat(tensileStrength=strength, fractureEnergy=length * strength, cohesion=2.8 * strength, shearFractureEnergy=14 * length * strength)
+
+
+def slender(mortar=None):
     """(base, block): a block of 0.4 x 1.2 m that turns about its toe."""
-    base, stone = ground()
+    base, stone = ground(mortar=mortar)
     return base, dem.block((0.4, 0.4, 1.2), stone, on=base)
 
 
@@ -114,6 +120,33 @@ def test_a_narrow_stack_on_a_wide_one(method, number):
     assert abs(result.multiplier / exact - 1) < CLOSE and not result.doubts, result
     alone = dem.TiltTable(direction="x", method=method).bisect(progress=False)
     assert abs(alone.multiplier / 0.25 - 1) < CLOSE and not alone.doubts, alone
+
+
+@pytest.mark.parametrize("model", ("planar", "spatial"))
+@pytest.mark.parametrize("strength, length, stiffness, pretension, moment", (
+    (5e3, 7e-6, 1e6, 0, 500 - 0.5e-3 * 0.6 * 3767), (20e3, 7e-6, 1e6, 0, 640), (20e3, 7e-6, 1e6, 300, 640 + 300), (20e3, 7e-5, 1e9, 0, 640 + 500)))
+def test_a_mortared_block_on_a_tie(strength, length, stiffness, pretension, moment, model):
+    """Sound, its joint bears f_t A b/2, 160 or 640 N m, and the tie 500 N m at its strength. By a soft tie the block holds until its joint cracks, or by the tie alone until this
+    breaks, whichever is more; a pretension adds its moment to that of the sound joint. By a tie that bears its strength before the crack opens, both are there."""
+    base, block = slender(mortared(strength, length))
+    tie = anchor(base, block, 1.0, stiffness, 500, pretension=pretension)
+    result = found(model=model)
+    print(f"{strength:.0e} Pa, k = {stiffness:.0e}: {result.multiplier / holds(block, moment) - 1:.1e}", *result.remarks)
+    assert abs(result.multiplier / holds(block, moment) - 1) < CLOSE and not result.doubts, result
+    assert any("joints have cracked and the blocks stand" in remark for remark in result.remarks) == (moment < 500)
+    assert not tie.broken and found(model=model).trials == result.trials
+
+
+@pytest.mark.parametrize("strength", (0, 1e3, 2e3))
+def test_a_mortared_parapet_above_a_tie(strength):
+    """The uppermost of four blocks turns alone at (W b/2 + f_t A b/2) / (W h/2); those below it crack before, and the tie holds them."""
+    base, stone = ground(mortar=mortared(strength, 7e-5) if strength else None)
+    blocks = dem.stack(4, (0.4, 0.4, 0.3), stone, base)
+    anchor(base, blocks[2], 0.75, 1e8, math.inf)
+    result = found()
+    exact = (0.2 * weight(blocks[3]) + 0.032 * strength) / (0.15 * weight(blocks[3]))
+    assert abs(result.multiplier / exact - 1) < CLOSE and not result.doubts, result
+    assert any("cracked" in remark for remark in result.remarks) == (strength > 0)
 
 
 def test_a_tie_that_stretches_beyond_the_share(tmp_path):

@@ -1,6 +1,6 @@
 // Shakes or rests walls by the step of `wall` (dynamics/wall), in the core alone.
 //
-//     assembly_bench key=value ...
+//     wall_bench key=value ...
 //
 // dim       2 (default), 3
 // scene     wall (default), column, heavy (a block `heavy` times as heavy on the wall), pillar (a block that rocks on the wall with `w0`),

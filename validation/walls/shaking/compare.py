@@ -184,9 +184,9 @@ def summary_of(errors):
 
 
 def excursions_in_plane(build, settings):
-    """Table: how far the mean of the top course of the walls of REFERENCE goes at 1 ms by the core alone, against Gauss-Seidel. `settings`: key=value of assembly_bench."""
+    """Table: how far the mean of the top course of the walls of REFERENCE goes at 1 ms by the core alone, against Gauss-Seidel. `settings`: key=value of wall_bench."""
     def reached(row):
-        command = [build / "validation/assembly_bench", f"courses={row['courses']}", f"per={row['per_course']}", f"amp={row['amplitude']}", *settings]
+        command = [build / "validation/wall_bench", f"courses={row['courses']}", f"per={row['per_course']}", f"amp={row['amplitude']}", *settings]
         line = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()[-1]
         numbers = {name: float(re.search(key + r" ([-\d.e+naif]+)", line)[1])
                    for name, key in dict(excursion="mean", cpu=r"\(step", iterations="its", factorisations="fac", rises="loss", deepest="pen").items()}

@@ -231,13 +231,6 @@ struct RigidSystem {
 			sum += body.kineticEnergy();
 		return sum;
 	}
-	double elasticEnergy() const // of the ties
-	{
-		double sum = 0;
-		for (const Tie<K>& tie : ties)
-			sum += tie.energy;
-		return sum;
-	}
 	// Velocities and places.
 	bool isFinite() const
 	{

@@ -33,8 +33,8 @@ public:
 	static constexpr int maxBlocks = K::dimension == 2 ? 20 : 6;
 
 	WallSettings settings;
-	wall::AssemblyReport report; // of the last step of the walls
-	bool partBases {false};      // blocks of a wall are near bases that have different motions
+	wall::Report report;    // of the last step of the walls
+	bool partBases {false}; // blocks of a wall are near bases that have different motions
 
 	StepReport advance(RigidSystem<K>& system, double dt);
 	// Returns what the last step has made and lost of energy.

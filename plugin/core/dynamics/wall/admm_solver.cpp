@@ -354,7 +354,7 @@ void AdmmSolver<K>::makeMatrix(const Problem& problem, const AdmmSettings& setti
 		pass.velocity = c.bodies().velocity().data(); // before the step
 		penaltyPass(pass);
 	});
-	Array<typename AssemblyMatrix<K>::Stiffness> stiffness(penalties.size());
+	Array<typename WallMatrix<K>::Stiffness> stiffness(penalties.size());
 	for (size_t g = 0; g < penalties.size(); ++g)
 		for (int k = 0; k < lanePoints<K>; ++k)
 			stiffness[g][k] = penalties[g][k].stiffness;

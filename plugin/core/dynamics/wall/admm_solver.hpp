@@ -51,7 +51,7 @@
 // at a point that sticks, a share is taken back in each step: b = share x/h. A penetration with which a point was found stays, and so does
 // one that a limit has let happen.
 #include "dynamics/wall/admm_passes.hpp"
-#include "dynamics/wall/assembly_matrix.hpp"
+#include "dynamics/wall/wall_matrix.hpp"
 
 namespace masonry::wall {
 
@@ -127,7 +127,7 @@ private:
 	void prepareRows(const Problem& problem, bool isNewMatrix);
 	void pushRows(const Problem& problem, Results& results);
 
-	AssemblyMatrix<K> matrix;
+	WallMatrix<K> matrix;
 	std::vector<GroupPenalty<K>> penalties; // by group
 	double turn {0};                        // by which rows of a point have changed since A was made, at most
 	Follower compared;                      // the contacts that `turn` is of

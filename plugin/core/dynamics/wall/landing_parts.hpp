@@ -12,7 +12,7 @@
 
 namespace masonry::wall {
 
-// The shares and the table on which they were found: docs/numerics.md, Landings of whole walls.
+// The shares and the table on which they were found: docs/tuning.md, Landings of whole walls.
 //
 // Share of the energy above which what a step loses is a landing; the share that a part loses; and the least loss, relative to the energy
 // that all blocks have with the speed that gravity gives in a step. Larger: walls that land flat swing back too little; smaller: more CPU

@@ -20,12 +20,12 @@
 
 namespace masonry::wall {
 
-struct AssemblySettings {
+struct Settings {
 	AdmmSettings solver;
 	int threads {1}; // at most; small structures use one. The bits do not depend on it
 };
 
-struct AssemblyReport : StepReport {
+struct Report : StepReport {
 	int iterations {0};          // of the solver in this step
 	double velocityResidual {0}; // m/s
 	double forceResidual {0};    // error of impulses, as the velocity that it gives the point, m/s
@@ -35,8 +35,8 @@ struct AssemblyReport : StepReport {
 template <class K>
 class WallStep {
 public:
-	AssemblySettings settings;
-	AssemblyReport report; // of the last step
+	Settings settings;
+	Report report; // of the last step
 
 	StepReport advance(RigidSystem<K>& system, double dt);
 	// Returns what the last step has made of energy; what it has lost is not known apart from impacts.

@@ -81,7 +81,10 @@ void addTie(RigidSystem<K>& s, int body1, const typename K::Vector& place1, int 
 template <class K>
 double balanceOf(const RigidSystem<K>& s)
 {
-	return balance(s) + s.elasticEnergy() + s.tieDissip;
+	double elastic = 0;
+	for (const Tie<K>& tie : s.ties)
+		elastic += tie.energy;
+	return balance(s) + elastic + s.tieDissip;
 }
 
 // A block on a base without friction, between two ties with pretension.

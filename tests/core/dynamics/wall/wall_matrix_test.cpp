@@ -1,5 +1,5 @@
 // The matrix of a structure and its factorisation.
-#include "dynamics/wall/assembly_matrix.hpp"
+#include "dynamics/wall/wall_matrix.hpp"
 #include "wall_step_rig.hpp"
 #include <catch.hpp>
 
@@ -9,9 +9,9 @@ namespace {
 
 // Stiffnesses of the size of the masses, by group; each third point is not in A.
 template <class K>
-Array<typename AssemblyMatrix<K>::Stiffness> stiffnessOf(const RigidSystem<K>& s, const ContactSet<K>& c)
+Array<typename WallMatrix<K>::Stiffness> stiffnessOf(const RigidSystem<K>& s, const ContactSet<K>& c)
 {
-	Array<typename AssemblyMatrix<K>::Stiffness> result(c.layout().groups().size());
+	Array<typename WallMatrix<K>::Stiffness> result(c.layout().groups().size());
 	int number = 0;
 	for (size_t g = 0; g < result.size(); ++g) {
 		const LaneGroup& lanes = c.layout().groups()[g];
@@ -35,7 +35,7 @@ TEMPLATE_TEST_CASE("a solve inverts masses and stiffnesses of the points", "", P
 	Frozen<TestType> frozen(s, 1e-3);
 	auto& c = frozen.contacts;
 	const auto stiffness = stiffnessOf(s, c);
-	AssemblyMatrix<TestType> matrix;
+	WallMatrix<TestType> matrix;
 	matrix.make(c, stiffness);
 	CHECK(matrix.isOf(c));
 	CHECK(matrix.hasMasses(c));
@@ -89,7 +89,7 @@ TEMPLATE_TEST_CASE("the matrix tells how far the rows of its points have turned"
 	addBlock(s, sizeOf(s, 0.5, 0.25), placeOf(s, 0, 0.25));
 	scene.near.update(s);
 	Frozen<TestType> frozen(s, 1e-3);
-	AssemblyMatrix<TestType> matrix;
+	WallMatrix<TestType> matrix;
 	matrix.make(frozen.contacts, stiffnessOf(s, frozen.contacts));
 	for (auto& body : s.bodies) { // about the middle of the joint
 		typename TestType::Velocity turn = TestType::Velocity::Zero();

@@ -21,7 +21,7 @@ inline std::array<Lanes*, 27> rowsOf(PointLanes<Space>& p)
 }
 
 template <class K>
-class AssemblyMatrix {
+class WallMatrix {
 public:
 	using Stiffness = std::array<Lanes, lanePoints<K>>; // 1/R; zero: the point is not in A
 

@@ -1,4 +1,4 @@
-#include "dynamics/wall/assembly_matrix.hpp"
+#include "dynamics/wall/wall_matrix.hpp"
 #include <algorithm>
 
 namespace masonry::wall {
@@ -34,7 +34,7 @@ template <class K>
 struct ComparePass {
 	const Group<K>* groups;
 	const Points<K>* points;
-	const typename AssemblyMatrix<K>::Stiffness* stiffness;
+	const typename WallMatrix<K>::Stiffness* stiffness;
 	int begin, end;
 	const Lanes* velocity;
 };
@@ -62,7 +62,7 @@ MASONRY_LANES void comparePass(const ComparePass<Space>& pass, Lanes& worst) { c
 } // namespace
 
 template <class K>
-void AssemblyMatrix<K>::make(const ContactSet<K>& c, Array<Stiffness> stiffness, std::vector<MortarRow<K>> rows)
+void WallMatrix<K>::make(const ContactSet<K>& c, Array<Stiffness> stiffness, std::vector<MortarRow<K>> rows)
 {
 	stiffnesses = std::move(stiffness);
 	mortar = std::move(rows);
@@ -73,7 +73,7 @@ void AssemblyMatrix<K>::make(const ContactSet<K>& c, Array<Stiffness> stiffness,
 }
 
 template <class K>
-bool AssemblyMatrix<K>::isOf(const ContactSet<K>& c) const
+bool WallMatrix<K>::isOf(const ContactSet<K>& c) const
 {
 	if (pairs.size() != c.layout().groups().size())
 		return false;
@@ -84,7 +84,7 @@ bool AssemblyMatrix<K>::isOf(const ContactSet<K>& c) const
 }
 
 template <class K>
-bool AssemblyMatrix<K>::hasMasses(const ContactSet<K>& c) const
+bool WallMatrix<K>::hasMasses(const ContactSet<K>& c) const
 {
 	if (perMass.size() != c.bodies().size())
 		return false;
@@ -95,7 +95,7 @@ bool AssemblyMatrix<K>::hasMasses(const ContactSet<K>& c) const
 }
 
 template <class K>
-double AssemblyMatrix<K>::change(const ContactSet<K>& c) const
+double WallMatrix<K>::change(const ContactSet<K>& c) const
 {
 	Lanes worst[Team::maxParts + 1] {};
 	const Group<K>* groups = c.points().groups().data();
@@ -110,7 +110,7 @@ double AssemblyMatrix<K>::change(const ContactSet<K>& c) const
 }
 
 template <class K>
-void AssemblyMatrix<K>::factorise(const ContactSet<K>& c)
+void WallMatrix<K>::factorise(const ContactSet<K>& c)
 {
 	pairs.resize(c.layout().groups().size());
 	for (size_t g = 0; g < pairs.size(); ++g)
@@ -130,7 +130,7 @@ void AssemblyMatrix<K>::factorise(const ContactSet<K>& c)
 
 // A node for each pack of a body; edges between those of a body, then between those of a pair.
 template <class K>
-void AssemblyMatrix<K>::setGraph(const ContactSet<K>& c)
+void WallMatrix<K>::setGraph(const ContactSet<K>& c)
 {
 	constexpr int n = packs<K>;
 	node.assign(c.bodies().size(), -1);
@@ -154,7 +154,7 @@ void AssemblyMatrix<K>::setGraph(const ContactSet<K>& c)
 
 // J^T J / R of a lane's pair; its edges begin at `edge`, which goes on to the next pair's.
 template <class K>
-void AssemblyMatrix<K>::addPair(const ContactSet<K>& c, int g, int i, int& edge)
+void WallMatrix<K>::addPair(const ContactSet<K>& c, int g, int i, int& edge)
 {
 	constexpr int n = packs<K>;
 	Block own[2][n][n], across[n][n]; // rows and columns by pack
@@ -206,7 +206,7 @@ void AssemblyMatrix<K>::addPair(const ContactSet<K>& c, int g, int i, int& edge)
 			factor.addEdge(edge++, across[k / n][k % n]);
 }
 
-template class AssemblyMatrix<Plane>;
-template class AssemblyMatrix<Space>;
+template class WallMatrix<Plane>;
+template class WallMatrix<Space>;
 
 } // namespace masonry::wall
