@@ -97,6 +97,8 @@ class AdmmSolver {
 public:
 	// Solves a step from the contacts' velocities and states; an instant starts without impulses.
 	SolverStatus solve(const AdmmProblem<K>& problem, const AdmmSettings& settings, AdmmResults<K>& results);
+	// The next solve goes on as that of a first step: R follows the loads that it finds.
+	void restart() { cold = true; }
 	// The next solve of these contacts needs this from the last.
 	template <class Archive>
 	void serialize(Archive& archive, const ContactSet<K>& contacts)
@@ -138,7 +140,7 @@ private:
 	Array<Strength<K>> soundInA; // strengths of rigid joints when A was made
 	double age {0};              // s, since R was last compared with the loads
 	double saved {0};            // iterations
-	bool cold {true};            // no step has been solved
+	bool cold {true};            // the loads are not known: no step has been solved, or all contacts change at once
 	bool ofInstant {false};      // R is that of an instant
 	bool atRest {false};         // R is that of a structure at rest
 };

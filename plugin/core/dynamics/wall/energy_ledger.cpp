@@ -71,21 +71,43 @@ void EnergyLedger<K>::takeContacts(const RigidSystem<K>& s, const ContactSet<K>&
 }
 
 template <class K>
+double EnergyLedger<K>::allowed(const RigidSystem<K>& s, const Scales& scales, double h, double ofBase, double ofForces) const
+{
+	const double mass = freeMass(s), atStake = std::abs(ofBase) + std::abs(ofForces) + kinetic,
+	             lifts = mass * scales.acceleration * scales.length, slowest = tolerance::wall::createdTravel * scales.length / h;
+	return tolerance::wall::createdShare * atStake + tolerance::wall::createdLift * lifts + mass * slowest * slowest;
+}
+
+template <class K>
+bool EnergyLedger<K>::makesEnergy(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmResults<K>& results, const LaneArray& load,
+                                  double h) const
+{
+	const LaneArray& after = results.velocity;
+	double change = 0, ofForces = 0;
+	for (size_t p = 0; p < after.size(); ++p)
+		for (int k = 0; k < 3 && after[p][3] > 0; ++k) {
+			const double momentum = (before[p][k] + after[p][k]) / (2 * after[p][3]);
+			change += momentum * (after[p][k] - before[p][k]);
+			ofForces += momentum * load[p][k];
+		}
+	for (const TieRow<K>& row : results.ties)
+		ofForces += row.work(before, after);
+	const double ofBase = work(s, c, results);
+	return change - ofForces - ofBase > allowed(s, Scales(s), h, ofBase, ofForces);
+}
+
+template <class K>
 double EnergyLedger<K>::close(RigidSystem<K>& s, const Scales& scales, double h, double earlier)
 {
-	const double mass = freeMass(s);
 	taken = forces + baseWork + kinetic - s.kineticEnergy();
 	const double impacts = taken + lifted - friction - crack;
 	s.baseWork += baseWork;
 	s.crackDissip += crack;
 	s.frictDissip += friction;
 	s.impactDissip += impacts;
-	const double atStake = std::abs(baseWork) + std::abs(forces) + kinetic, liftedAll = mass * scales.acceleration * scales.length,
-	             slowest = tolerance::wall::createdTravel * scales.length / h;
-	const double allowed = tolerance::wall::createdShare * atStake + tolerance::wall::createdLift * liftedAll + mass * slowest * slowest;
 	gained = std::max(0., friction + crack - taken - earlier);
 	const double balance = impacts + earlier;
-	return balance < -allowed ? -balance : 0;
+	return balance < -allowed(s, scales, h, baseWork, forces) ? -balance : 0;
 }
 
 template <class K>

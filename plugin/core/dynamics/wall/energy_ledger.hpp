@@ -38,6 +38,10 @@ public:
 	const LaneArray& velocityBefore() const { return before; }
 	// Returns the work of the prescribed bodies by the impulses of the last solve, J.
 	double work(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmResults<K>& results) const;
+	// Whether the contacts, with the impulses of the last solve, make more energy than the error of a sound step can. `load`: change of
+	// velocity by the forces in the step, of length h, in packs. What friction takes is left out.
+	bool makesEnergy(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmResults<K>& results, const LaneArray& load,
+	                 double h) const;
 	// Takes the contacts' work after the solve, with the frames of the step. `friction` and `crack`: what it
 	// and cracks of mortar have taken, J.
 	void takeContacts(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmResults<K>& results, double friction,
@@ -75,6 +79,9 @@ public:
 	}
 
 private:
+	// Energy that the error of a sound part or instant can create, where the base and the forces do this work, J.
+	double allowed(const RigidSystem<K>& system, const Scales& scales, double h, double baseWork, double forces) const;
+
 	LaneArray before;         // V-, m/s
 	LaneArray undriven, last; // packs of the prescribed bodies without a drive, now and before, m/s
 	double kinetic {0}, baseWork {0}, friction {0}, crack {0}, forces {0}; // J

@@ -184,12 +184,23 @@ void WallStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
 	}
 }
 
+// A step whose impulses make energy, since all of its contacts have changed, is solved again as a first step is.
 template <class K>
 CappedStatus WallStep<K>::solve(RigidSystem<K>& s, const AdmmProblem<K>& problem, const AdmmSettings& solverSettings)
 {
-	const CappedStatus status = capped.solve(s, problem, solverSettings, solver, ledger, results);
-	report.iterations += status.iterations;
-	report.factorisations += status.factorisations;
+	const StepContext& step = problem.step;
+	const auto solveOnce = [&] {
+		const CappedStatus found = capped.solve(s, problem, solverSettings, solver, ledger, results);
+		report.iterations += found.iterations;
+		report.factorisations += found.factorisations;
+		return found;
+	};
+	CappedStatus status = solveOnce();
+	if (!step.instant && status.finite && status.residual > solverSettings.tolerance * step.fall &&
+	    ledger.makesEnergy(s, contacts, results, loads, step.h)) {
+		solver.restart();
+		status = solveOnce();
+	}
 	report.velocityResidual = std::max(report.velocityResidual, status.residual);
 	return status;
 }

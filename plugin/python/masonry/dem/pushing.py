@@ -26,6 +26,8 @@ _AVERAGED = 0.2
 _LOOK = 100
 # A failure of the integrator that names a jam has these words (rigid_failures.cpp).
 _JAM = "bodies with prescribed motion"
+# Share of the work that the platens do and take back which the solver may make of nothing without a word.
+_MADE = 1e-3
 # Share of a step by which O.time may miss the end: it is a sum of steps.
 _ROUND_OFF = 1e-3
 # Extra width of the gap of the platens in front, relative to what a turn of the block takes.
@@ -53,6 +55,7 @@ class Push:
         self.drop, self.collapse, self.releases, self.ended = drop, collapse, False, ""
         states = {id: O.bodies[id].state for id in points}
         self._arms = {id: np.array(states[id].ori.conjugate() * (Vector3(point) - states[id].pos)) for id, point in points.items()}  # in the axes of the block
+        self._made_before = None  # J, what the solver had made of nothing when the run of the push began
         self._look = 0  # O.iter of the next look at force and blocks: each reads the whole curve and all blocks
 
     @property
@@ -152,14 +155,26 @@ class Push:
 
     def is_over(self):
         """Whether the test has ended by now; `ended` then says why."""
+        if self._made_before is None:
+            self._made_before = _made_energy()
         if not self.ended:
             self.ended = self._why()
             if self.ended == "jam":
                 notes.say(f"the push jams at {O.time:.4g} s: the platens {', '.join(map(str, self.platens))} press blocks that cannot give way, and the curve "
                           "is worthless from there on: another height, more clearance or a smaller displacement may help")
+            if self.ended:
+                self._say_what_is_made()
             if self.ended and self.releases:
                 self.release()
         return bool(self.ended)
+
+    def _say_what_is_made(self):
+        """A slow test turns over little kinetic energy: what the solver makes of nothing is judged by the work of the platens."""
+        table = self.curve
+        work, made = np.abs(table["step_force"][1:] * np.diff(table["displacement"])).sum(), _made_energy() - self._made_before
+        if made > _MADE * work > 0:
+            notes.say(f"in this push the solver has made {made:.3g} J of nothing, {100 * made / work:.2g} % of the work that the platens do and take back: "
+                      "blocks that it has thrown may have changed the curve. Compare with a smaller dt of dem.engines()")
 
     def _why(self):
         if any(_JAM in getattr(engine, "firstFailure", "") for engine in O.engines):
@@ -182,6 +197,11 @@ class Push:
             if len(envelope) and place[-1] > 0 and place[-1] >= place.max() and envelope[-1] < (1 - self.drop) * envelope.max():
                 return True
         return False
+
+
+def _made_energy():
+    """J, of the engine that moves the blocks."""
+    return sum(getattr(engine, "madeEnergy", 0) for engine in O.engines)
 
 
 def _direction_given(direction):
@@ -259,7 +279,8 @@ def push(ids=None, displacement=None, speed=None, direction=(1, 0, 0), vertical=
     clearance       with cycles: gap between a block and the platens in front of it, m; None: room for a turn of the block about the foot of the structure
 
     The force is the sum of the forces in the contacts of the platens, averaged over 0.2 s (push.curve). The platens begin at rest at O.time, and change their speed with 0.02 m/s^2 at most (0.4 with vertical='held'). A
-    test ends at the last displacement, at a drop, a collapse or a jam (push.ended), which is said in a line. Raises ValueError for input out of its range.
+    test ends at the last displacement, at a drop, a collapse or a jam (push.ended), which is said in a line. Another line says at its end that the solver has made more than 1e-3 of
+    the work that the platens do and take back. Raises ValueError for input out of its range.
     """
     unit, targets = _direction_given(direction), _targets_given(displacement, cycles)
     if (ids is None) == (platens is None):
