@@ -173,14 +173,14 @@ void Mortar<K>::begin(const RigidSystem<K>& s, const ContactSet<K>& c, const Lan
 		const MortarJoint<K>& joint = s.mortar[j];
 		if (corners[j].empty() || joint.isBroken())
 			continue;
-		if (joint.isRigid) {
-			strength.resize(c.layout().groups().size());
+		strength.resize(c.layout().groups().size());
+		if (joint.isRigid)
 			for (const MortarCorner& corner : corners[j]) {
 				Strength<K>& of = strength[corner.slot.group];
 				of.pull[corner.point][corner.slot.lane] = time * joint.law.tensileStrength * joint.area * corner.share;
 				of.shift[corner.point][corner.slot.lane] = time * joint.law.cohesion * joint.area * corner.share / joint.law.friction;
 			}
-		} else
+		else
 			addRows(s, c, before, j, step);
 	}
 }
