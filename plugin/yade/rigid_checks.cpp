@@ -3,7 +3,6 @@
 #include "BaseMotionEngine.hpp"
 #include "BlockTie.hpp"
 #include "MoreauJeanIntegrator.hpp"
-#include "PulseTrainEngine.hpp"
 #include "RockingJointEngine.hpp"
 #include "checked_body.hpp"
 #include "joint_engines.hpp"
@@ -95,22 +94,15 @@ bool MoreauJeanIntegrator::hasMortar() const
 
 void MoreauJeanIntegrator::checkMortar() const
 {
-	const string other = " or give the scene compliant joints (model='compliant').";
 	for (const Body* body : blocks()) {
 		const auto* material = dynamic_cast<const BlockMat*>(body->material.get());
 		if (!material || !material->mortar)
 			continue;
 		const string of = sentence("O.bodies[", body->id, "].mat.");
 		if (!wall)
-			throw std::invalid_argument(of + "mortar is not allowed here: of rigid blocks, those of method='wall' have it; leave it out," +
-			                            other);
+			throw std::invalid_argument(of + "mortar is not allowed here: of rigid blocks, those of method='wall' have it; leave it out, "
+			                                 "or give the scene compliant joints (model='compliant').");
 	}
-	for (const auto& motion : livingMotions())
-		if (const auto* pulses = dynamic_cast<const PulseTrainEngine*>(motion.get()); pulses && pulses->shape == "dirac" && hasMortar())
-			throw std::invalid_argument(
-			    "PulseTrainEngine.shape = 'dirac' is not allowed with mortar and method='wall', where no pulse at an "
-			    "instant can crack mortar: give the pulses a duration," +
-			    other);
 }
 
 void MoreauJeanIntegrator::checkEngines()

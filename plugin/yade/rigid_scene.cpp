@@ -243,7 +243,6 @@ void RigidScene<K>::takeLaws()
 		pair.friction = friction;
 		pair.restitution = restitution;
 		system.laws.changed();
-		checkLawsOfMortar();
 	}
 }
 

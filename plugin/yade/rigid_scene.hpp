@@ -185,7 +185,6 @@ private:
 	masonry::MortarLaw askedLaw(const Real* row, size_t pair) const;
 	void bond();
 	masonry::MortarJoint<K> jointOf(const Pair& pair, const masonry::MortarLaw& law) const;
-	void checkLawsOfMortar() const;
 	void findRows(vector<int>& ids, vector<Real>& rows);
 
 	void forgetNeighbours();

@@ -155,21 +155,9 @@ void RigidScene<K>::bond()
 	for (const auto& [bodies, joint] : made)
 		system.mortar.push_back(joint);
 	takeLaws();
-	checkLawsOfMortar();
 	rowOf.clear();
 	asked.clear();
 	bonds = false;
-}
-
-/// An instant has no time in which mortar could spend energy.
-template <class K>
-void RigidScene<K>::checkLawsOfMortar() const
-{
-	for (const Pair& pair : system.pairs)
-		if (!system.mortar.empty() && !std::isnan(pair.restitution))
-			throw std::invalid_argument(
-			    sentence(pairOf(kept.ids[pair.body1], kept.ids[pair.body2]), " has restitution = ", pair.restitution,
-			             ": it must be left out where blocks of method='wall' have mortar, which no impact at an instant can crack."));
 }
 
 /// Joints that are not listed yet come last: who records the rows counts on it.
@@ -263,8 +251,6 @@ template void RigidScene<Plane>::addMortar(const Remembered<Plane>&, const vecto
 template void RigidScene<Space>::addMortar(const Remembered<Space>&, const vector<int>&);
 template void RigidScene<Plane>::bond();
 template void RigidScene<Space>::bond();
-template void RigidScene<Plane>::checkLawsOfMortar() const;
-template void RigidScene<Space>::checkLawsOfMortar() const;
 template void RigidScene<Plane>::showMortar();
 template void RigidScene<Space>::showMortar();
 template void RigidScene<Plane>::writeMortar(vector<int>&, vector<Real>&);

@@ -121,8 +121,6 @@ def test_a_saved_run_goes_on_with_the_same_bits(tmp_path, direction):
 
 
 def test_what_is_refused():
-    brick(restitution=0.5)
-    refuses_to_run("restitution = 0.5", "mortar")
     brick(frictionAngle=0.0)
     refuses_to_run("frictionAngle", "method='wall'")
     O.reset()
@@ -131,7 +129,6 @@ def test_what_is_refused():
     refuses(lambda: rigid_engines(model="planar"), "method = 'auto'", "'wall'")
     refuses(lambda: rigid_engines(model="spatial"), "model = 'spatial'", "'wall'")
     refuses(lambda: rigid_engines(method="localised"), "method = 'localised'")
-    refuses(lambda: rigid_engines(dem.PulseTrainEngine(ids=[0], impulse=0.1, times=[0.1]), method="wall"), "dirac", "mortar")
     O.engines = rigid_engines(method="wall")
     O.step()
     O.engines[-1].method = "localised"

@@ -9,7 +9,7 @@ namespace masonry::wall {
 // For rows of mortar.
 inline RowStep rowStepOf(const StepContext& c, const AdmmSettings& a)
 {
-	return {c.h, c.fall, a.softness, a.minSoftness, a.relaxation, a.boundShare};
+	return {mortarTime(c), c.instant ? c.speed : c.fall, a.softness, a.minSoftness, a.relaxation, a.boundShare};
 }
 
 // For contact points; `atRest`: the structure is at rest.

@@ -53,14 +53,32 @@ template <class K>
 void BasePulse<K>::move(const RigidSystem<K>& s, ContactSet<K>& c, double h)
 {
 	half.resize(velocity.size());
-	const typename K::Vector down = s.gravity.normalized(); // zero without gravity
 	before = velocity;
 	for (size_t d = 0; d < velocity.size(); ++d) {
 		const typename K::Vector now = s.drives[d].meanVelocity(s.time, h);
-		half[d] = (velocity[d] - down * down.dot(jumps[d]) - now) / 2;
+		half[d] = (velocity[d] - lift(s, d) - now) / 2;
 		velocity[d] = now;
 	}
 	set(s, c);
+}
+
+// Along gravity.
+template <class K>
+typename K::Vector BasePulse<K>::lift(const RigidSystem<K>& s, int drive) const
+{
+	const typename K::Vector down = s.gravity.normalized(); // zero without gravity
+	return down * down.dot(jumps[drive]);
+}
+
+template <class K>
+void BasePulse<K>::addLift(const RigidSystem<K>& s, LaneArray& of) const
+{
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		if (const int drive = s.bodies[b].drive; s.bodies[b].prescribed && drive >= 0) {
+			const typename K::Vector by = lift(s, drive);
+			for (int k = 0; k < K::dimension; ++k)
+				of[packs<K> * b][k] += by[k];
+		}
 }
 
 template <class K>

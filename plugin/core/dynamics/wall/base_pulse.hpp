@@ -21,6 +21,9 @@ public:
 	// Undoes the last move, before another one of the same instant.
 	void takeBack() { velocity = before; }
 
+	// Adds to velocities of the bodies, in packs, the part of the jumps that the last move counts as within the step.
+	void addLift(const RigidSystem<K>& system, LaneArray& velocity) const;
+
 	double speed() const;                            // largest jump, m/s
 	const Vectors& halfBack() const { return half; } // from the velocity after an instant, or in a step, to the mean with that before
 	Vectors velocity;                                // of the drives, in the last step or after its jump
@@ -33,6 +36,7 @@ public:
 
 private:
 	void set(const RigidSystem<K>& system, ContactSet<K>& contacts) const;
+	typename K::Vector lift(const RigidSystem<K>& system, int drive) const;
 	Vectors jumps, half, before;
 };
 

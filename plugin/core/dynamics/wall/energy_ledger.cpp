@@ -55,17 +55,17 @@ double EnergyLedger<K>::work(const RigidSystem<K>& s, const ContactSet<K>& c, co
 		sum -= row.impulse * (row.baseRate(before) + row.baseRate(velocity)) / 2;
 	for (const MortarRow<K>& row : results.mortar)
 		for (int k = 0; k < K::rows; ++k)
-			sum -= row.p[k] * (row.arms[k].baseRate(before) + row.arms[k].baseRate(velocity)) / 2;
+			sum -= row.p[k] * (row.baseBefore[k] + row.arms[k].baseRate(velocity)) / 2;
 	return sum;
 }
 
 template <class K>
 void EnergyLedger<K>::takeContacts(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmResults<K>& results, double loss,
-                                   double spent)
+                                   double spent, double ofBase)
 {
 	friction = loss;
 	crack = spent;
-	baseWork = work(s, c, results);
+	baseWork = work(s, c, results) + ofBase;
 	for (const TieRow<K>& row : results.ties)
 		forces += row.work(before, results.velocity);
 }

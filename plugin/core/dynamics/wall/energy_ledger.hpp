@@ -15,7 +15,8 @@
 //
 // and beside it the base does the work of the couples of rows. Arms are those of the start of the step: the centripetal acceleration a of a
 // point then comes as a velocity h a/2 along its normal and goes as -h a/2, at a pivot and on a base that turns alike, and does no work. At
-// an instant there are no forces, nothing moves, and v_b- and v_b+ are the velocities before and after a jump.
+// an instant there are no forces, nothing moves, and v_b- and v_b+ are the velocities before and after a jump. Cracks of mortar are
+// stopped after the jump, by a base that moves on, which does more work.
 //
 // p is the impulse with which the new velocities obey the momentum equation. The loss by impacts is the rest of the balance. It also holds
 // the solver's error, what the position projection gives, and what a step of the first order loses where velocities jump between two steps:
@@ -43,9 +44,9 @@ public:
 	bool makesEnergy(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmResults<K>& results, const LaneArray& load,
 	                 double h) const;
 	// Takes the contacts' work after the solve, with the frames of the step. `friction` and `crack`: what it
-	// and cracks of mortar have taken, J.
+	// and cracks of mortar have taken; `base`: work of the prescribed bodies on cracks at an instant, J.
 	void takeContacts(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmResults<K>& results, double friction,
-	                  double crack = 0);
+	                  double crack = 0, double base = 0);
 	// Takes the forces' work in a time h on a free body, which had the velocity `before` and moves by `moved`.
 	void takeForce(const RigidSystem<K>& system, const RigidBody<K>& body, const typename K::Velocity& before,
 	               const typename K::Velocity& moved, double h)

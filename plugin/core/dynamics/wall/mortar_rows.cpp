@@ -1,5 +1,6 @@
 #include "dynamics/wall/mortar_rows.hpp"
 #include "dynamics/wall/corner_forces.hpp"
+#include "dynamics/wall/crack_limits.hpp"
 #include <cmath>
 
 namespace masonry::wall {
@@ -46,6 +47,23 @@ void MortarRow<K>::start(const LaneArray& velocity)
 		z[k] = slides() ? u[k] : 0;
 }
 
+// Impulses begin at zero, and bounds with those of a point that is stopped.
+template <class K>
+void MortarRow<K>::toInstant(const LaneArray& velocity)
+{
+	constexpr double closed = 0.02; // opening that a crack has to go before it pulls, over G_I/f_t, which does not count
+	for (int k = 0; k < n; ++k) {
+		before[k] = arms[k].rate(velocity);
+		baseJump[k] = arms[k].baseRate(velocity) - baseBefore[k];
+		p[k] = z[k] = 0;
+	}
+	if (beyond * openingRate < -closed)
+		strength[0] = 0;
+	bias = tension = 0;
+	const double mean = meanStrength(openingRate * opening(timeOfInstant) + slipRate * slip(timeOfInstant));
+	bound = {mean * strength[0], mean * strength[1]};
+}
+
 template <class K>
 bool MortarRow<K>::slides() const
 {
@@ -67,7 +85,28 @@ double MortarRow<K>::slip(double h) const
 	Values mean {};
 	for (int k = 1; k < n; ++k)
 		mean[k] = (before[k] + z[k]) / 2;
-	return tangential(z) > 0 ? h * tangential(mean) : 0; // the bounds of p are those of the next pass already
+	return atInstant || tangential(z) > 0 ? h * tangential(mean) : 0; // the bounds of p are those of the next pass already
+}
+
+template <class K>
+double MortarRow<K>::shearWork() const
+{
+	return (tangential(z) > 0 ? bound[1] : tangential(p)) * slip(1);
+}
+
+template <class K>
+double MortarRow<K>::frictionWork() const
+{
+	return tangential(z) > 0 ? friction * std::min(0., tension) * slip(1) : 0;
+}
+
+template <class K>
+double MortarRow<K>::jumpWork(double pull, bool slips) const
+{
+	double sum = pull * baseJump[0] / 2;
+	for (int k = 1; k < n && slips; ++k)
+		sum -= p[k] * baseJump[k] / 2;
+	return sum;
 }
 
 template <class K>
@@ -122,34 +161,36 @@ void Mortar<K>::find(const RigidSystem<K>& s, const ContactSet<K>& c)
 }
 
 template <class K>
-void Mortar<K>::begin(const RigidSystem<K>& s, const ContactSet<K>& c, const LaneArray& before, double h)
+void Mortar<K>::begin(const RigidSystem<K>& s, const ContactSet<K>& c, const LaneArray& before, const StepContext& step)
 {
 	rows.clear();
 	strength.clear();
 	if (s.mortar.empty())
 		return;
 	find(s, c);
-	strength.resize(c.layout().groups().size());
-	const double time = h > 0 ? h : 1 / std::numeric_limits<float>::epsilon(); // s
+	const double time = mortarTime(step);
 	for (int j = 0; j < int(s.mortar.size()); ++j) {
 		const MortarJoint<K>& joint = s.mortar[j];
 		if (corners[j].empty() || joint.isBroken())
 			continue;
+		strength.resize(c.layout().groups().size());
 		if (joint.isRigid)
 			for (const MortarCorner& corner : corners[j]) {
 				Strength<K>& of = strength[corner.slot.group];
 				of.pull[corner.point][corner.slot.lane] = time * joint.law.tensileStrength * joint.area * corner.share;
 				of.shift[corner.point][corner.slot.lane] = time * joint.law.cohesion * joint.area * corner.share / joint.law.friction;
 			}
-		else if (h > 0)
-			addRows(s, c, before, j, h);
+		else
+			addRows(s, c, before, j, step);
 	}
 }
 
 template <class K>
-void Mortar<K>::addRows(const RigidSystem<K>& s, const ContactSet<K>& c, const LaneArray& before, int j, double h)
+void Mortar<K>::addRows(const RigidSystem<K>& s, const ContactSet<K>& c, const LaneArray& before, int j, const StepContext& step)
 {
 	constexpr double pullBack = 0.2; // share of an opening beyond the crack that a step takes back. Larger: shivering; smaller: drift
+	constexpr double grows = 3e-3;   // of the fall of a step: the speed from which on a crack opens or slips before an instant
+	const double h = mortarTime(step);
 	const MortarJoint<K>& joint = s.mortar[j];
 	const typename K::Pose &pose1 = s.bodies[joint.body1].pose, &pose2 = s.bodies[joint.body2].pose;
 	const auto axes = axesOf(joint, pose1, pose2);
@@ -170,6 +211,7 @@ void Mortar<K>::addRows(const RigidSystem<K>& s, const ContactSet<K>& c, const L
 			row.arms[r].arm[0] = speedArm(c.bodies(), joint.body1, -axis, (r == 0 ? at1 : grip1) - pose1.position);
 			row.arms[r].arm[1] = speedArm(c.bodies(), joint.body2, axis, (r == 0 ? at2 : grip2) - pose2.position);
 			row.before[r] = row.arms[r].rate(before);
+			row.baseBefore[r] = row.arms[r].baseRate(before);
 			row.p[r] = h * point.force[r];
 			row.z[r] = row.before[r];
 			row.u[r] = 0;
@@ -183,6 +225,12 @@ void Mortar<K>::addRows(const RigidSystem<K>& s, const ContactSet<K>& c, const L
 		row.bias = (row.beyond > 0 ? pullBack : 1) * row.beyond / h;
 		row.bound = row.strength = {most * joint.law.tensileStrength, most * joint.law.cohesion};
 		row.tension = row.p[0];
+		row.atInstant = step.instant;
+		if (step.instant) {
+			if (std::abs(row.before[0]) + tangential(row.before) > grows * step.fall)
+				continue;
+			row.toInstant(c.bodies().velocity());
+		}
 		rows.push_back(row);
 	}
 }
@@ -240,10 +288,7 @@ void Mortar<K>::letGo(RigidSystem<K>& s, const ContactSet<K>& c, const std::vect
 template <class K>
 MortarWork Mortar<K>::finish(RigidSystem<K>& s, ContactSet<K>& c, const std::vector<MortarRow<K>>& done, double h, double missed) const
 {
-	constexpr double counts =
-	    0.01; // damage from which on a crack counts. Larger: damage comes in jumps; smaller: unfinished iterations add up
 	constexpr double forgets = 0.2; // share of a crack that does not count, in a step in which it does not grow
-	constexpr double clear = 3;     // times the velocities that may be wrong, which an opening must be faster than
 	MortarWork work;
 	std::vector<std::vector<const MortarRow<K>*>> still(s.mortar.size());
 	std::vector<char> grows(s.mortar.size(), 0);
@@ -253,7 +298,7 @@ MortarWork Mortar<K>::finish(RigidSystem<K>& s, ContactSet<K>& c, const std::vec
 		still[row.joint].push_back(&row);
 		for (int k = 0; k < K::rows; ++k)
 			point.force[k] = row.p[k] / h;
-		const auto counted = [&](double way) { return way > clear * missed * h ? way : 0; };
+		const auto counted = [&](double way) { return way > crack::clear * missed * h ? way : 0; };
 		const double opening = counted(row.opening(h)), slip = counted(row.slip(h));
 		if (!(opening + slip > 0)) {
 			point.forgetCrack(forgets);
@@ -261,15 +306,10 @@ MortarWork Mortar<K>::finish(RigidSystem<K>& s, ContactSet<K>& c, const std::vec
 		}
 		grows[row.joint] = 1;
 		point.slip += slip;
-		// Corners that are pressed while a crack is stopped take their part of the pull.
-		double pull = -row.p[0];
-		if (row.z[0] <= clear * missed)
-			for (const MortarCorner& corner : corners[row.joint])
-				pull -= point.area / joint.area * std::max(0., c.points().states()[corner.slot.group][corner.point].pn[corner.slot.lane]);
-		point.openingDamage += std::max(0., pull) * opening / (h * point.area * joint.law.fractureEnergy);
+		point.openingDamage += pullOf(s, c.points().states(), row, missed) * opening / (h * point.area * joint.law.fractureEnergy);
 		point.slipDamage += row.bound[1] * slip / (h * point.area * joint.law.shearFractureEnergy);
 		const double damage = point.openingDamage + point.slipDamage;
-		if (!(damage > 0) || (point.state.spent == 0 && damage < counts))
+		if (!(damage > 0) || (point.state.spent == 0 && damage < crack::counts))
 			continue;
 		point.state.crack += std::max(0., row.beyond + h * row.u[0]);
 		point.state.slid += point.slip;
@@ -281,6 +321,18 @@ MortarWork Mortar<K>::finish(RigidSystem<K>& s, ContactSet<K>& c, const std::vec
 		if (!s.mortar[j].isRigid && !grows[j] && !corners[j].empty() && s.mortar[j].isSound())
 			hold(s, s.mortar[j], corners[j], c, still[j], h);
 	return work;
+}
+
+// What its crack has to pull.
+template <class K>
+double Mortar<K>::pullOf(const RigidSystem<K>& s, const PointStates<K>& states, const MortarRow<K>& row, double missed) const
+{
+	const MortarJoint<K>& joint = s.mortar[row.joint];
+	double pull = -row.p[0];
+	if (row.z[0] <= crack::clear * missed) // corners that are pressed while a crack is stopped take their part of the pull
+		for (const MortarCorner& corner : corners[row.joint])
+			pull -= joint.points[row.point].area / joint.area * std::max(0., states[corner.slot.group][corner.point].pn[corner.slot.lane]);
+	return std::max(0., pull);
 }
 
 // The joint is rigid again if its corners could bear its forces and it is closed.

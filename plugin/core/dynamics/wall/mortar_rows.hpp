@@ -23,8 +23,20 @@
 //
 // The damage of a step is the work of p_n and c_t over the fracture energies. A joint that yields and has not been damaged is rigid again
 // when it is closed and its forces are within its strength.
+//
+// An instant (StepContext::instant) has no length, so that a traction gives no impulse, and a jump opens a joint in no time. Its rows are
+// those of a step so long that what rests is held whatever it takes, while the velocities change at once: with u- after the jump, dx is
+// large and
+//
+//     c_n = G_I A S/((u- + u+)/2),    c_t = G_II A S/(|u_t- + u_t+|/2)
+//
+// (less if the joint opens and slips). A point keeps its bond if the kinetic energy that it has to stop is below the fracture energy that
+// is left of it, and else takes as much: the limit of the law of a step for a strength that grows without bound at the same fracture
+// energy. What is stopped counts as damage too. A crack that opens or slips before the instant, or that has to open before it pulls, bears
+// nothing at it: the next step stops it.
 #include "dynamics/model/rigid_system.hpp"
 #include "dynamics/wall/mortar_patch.hpp"
+#include "dynamics/wall/step_context.hpp"
 #include "dynamics/wall/tie_rows.hpp"
 
 namespace masonry::wall {
@@ -48,6 +60,10 @@ const Strength<K>* firstOf(const Array<Strength<K>>* strength)
 	return strength && !strength->empty() ? strength->data() : nullptr;
 }
 
+// An instant counts as a step of this length, s.
+constexpr double timeOfInstant = 1 / std::numeric_limits<float>::epsilon();
+inline double mortarTime(const StepContext& step) { return step.instant ? timeOfInstant : step.h; }
+
 // These values are the same for all rows of a step.
 struct RowStep {
 	double h, fall, softness, minSoftness, relaxation, boundShare;
@@ -67,19 +83,27 @@ struct MortarRow {
 	std::array<double, 2> strength; // tension and cohesion at the start of the step, N s
 	double beyond;                  // gap - d, m
 	double bias;                    // b, m/s
-	Values before;                  // u before the step, m/s
-	double resistance {0};          // R, 1/kg
-	std::array<double, 2> bound;    // c_n, c_t, N s
-	double tension;                 // g, N s
-	Values p, z, u;                 // N s, m/s, m/s
+	Values before;                  // u before the step, at an instant after the jump of the base, m/s
+	Values baseBefore;              // the part of the prescribed bodies in it, at an instant before their jump, m/s
+	Values baseJump;                // their jump at an instant, m/s
+	bool atInstant;
+	double resistance {0};       // R, 1/kg
+	std::array<double, 2> bound; // c_n, c_t, N s
+	double tension;              // g, N s
+	Values p, z, u;              // N s, m/s, m/s
 
 	double wantedResistance(const RowStep& step) const; // R by load
+	void toInstant(const LaneArray& velocity);          // after the jump of the base
 	void start(const LaneArray& velocity);
 	// The laws after a solve. Returns the largest velocity by which they are missed, m/s.
 	double pass(const LaneArray& velocity, const RowStep& step);
 	void push(const LaneArray& velocity, LaneArray& momentum) const;
 	double opening(double h) const; // e_n, m
 	double slip(double h) const;    // e_t, m
+	// The energies of an instant, J: that of |p_t| without friction, and that of friction.
+	double shearWork() const;
+	double frictionWork() const;
+	double jumpWork(double pull, bool slips) const; // of the prescribed bodies, beyond that on the mean of their velocities
 
 	// As far as A needs it.
 	template <class Archive>
@@ -95,6 +119,7 @@ private:
 
 struct MortarWork {
 	double crack {0}, friction {0}; // J
+	double base {0};                // of the prescribed bodies, since cracks are stopped after their jump, J
 };
 
 template <class K>
@@ -104,23 +129,31 @@ public:
 	// cracks begin late.
 	static constexpr double deadZone = 0.02;
 
-	// For a step of length h: strengths of the rigid joints, and rows of those that yield. `before`: velocities before it. At an instant, h
-	// = 0, rigid joints bear all, and others are dry.
-	void begin(const RigidSystem<K>& system, const ContactSet<K>& contacts, const LaneArray& before, double h);
+	// For a step: strengths of the rigid joints, and rows of those that yield. `before`: velocities before it, at an instant before the
+	// jump of the base.
+	void begin(const RigidSystem<K>& system, const ContactSet<K>& contacts, const LaneArray& before, const StepContext& step);
 	// Rigid joints that the step opens by so many dead zones. `after`: velocities after it.
 	std::vector<int> yielding(const RigidSystem<K>& system, const ContactSet<K>& contacts, const LaneArray& before, const LaneArray& after,
 	                          double h, double least) const;
+	// Rigid joints that have stopped more energy at an instant than a crack may spend unnoticed. `states`, `after`: impulses and
+	// velocities.
+	std::vector<int> strained(const RigidSystem<K>& system, const ContactSet<K>& contacts, const PointStates<K>& states,
+	                          const LaneArray& after) const;
 	void letGo(RigidSystem<K>& system, const ContactSet<K>& contacts, const std::vector<int>& joints, double h) const;
 	// Damage of the step by its rows. `missed`: by which velocities may be wrong, m/s.
 	MortarWork finish(RigidSystem<K>& system, ContactSet<K>& contacts, const std::vector<MortarRow<K>>& done, double h,
 	                  double missed) const;
+	// That of an instant. `states`: impulses of the contacts.
+	MortarWork finishInstant(RigidSystem<K>& system, const PointStates<K>& states, const std::vector<MortarRow<K>>& done,
+	                         double missed) const;
 
 	std::vector<MortarRow<K>> rows;
 	Array<Strength<K>> strength; // by group; empty: no mortar
 
 private:
 	void find(const RigidSystem<K>& system, const ContactSet<K>& contacts);
-	void addRows(const RigidSystem<K>& system, const ContactSet<K>& contacts, const LaneArray& before, int joint, double h);
+	void addRows(const RigidSystem<K>& system, const ContactSet<K>& contacts, const LaneArray& before, int joint, const StepContext& step);
+	double pullOf(const RigidSystem<K>& system, const PointStates<K>& states, const MortarRow<K>& row, double missed) const;
 	void hold(const RigidSystem<K>& system, MortarJoint<K>& joint, const MortarCorners& corners, ContactSet<K>& contacts,
 	          const std::vector<const MortarRow<K>*>& rows, double h) const;
 

@@ -172,9 +172,13 @@ void RockingEvents<K>::takeLaw(const RigidSystem<K>& s, const ContactSet<K>& c, 
 	event.block = at.block;
 	event.support = at.support;
 	event.face = point.face;
-	const ContactPair<K>& pair = s.pairs[c.layout().groups()[point.group].pair[point.lane]];
-	const MortarJoint<K>* mortar = mortarBetween(s.mortar, pair.body1, pair.body2);
-	event.asked = mortar && !mortar->isBroken() ? NAN : pair.restitution; // the law is that of dry joints
+	const auto pairOf = [&](const Point& of) -> const ContactPair<K>& { return s.pairs[c.layout().groups()[of.group].pair[of.lane]]; };
+	const auto hasMortar = [&](const Point& of) {
+		const MortarJoint<K>* mortar = mortarBetween(s.mortar, pairOf(of).body1, pairOf(of).body2);
+		return mortar && !mortar->isBroken();
+	};
+	const bool isDry = s.mortar.empty() || std::none_of(points.begin() + joint.begin, points.begin() + joint.end, hasMortar);
+	event.asked = isDry ? pairOf(point).restitution : NAN; // the law is that of dry joints
 	event.normal = (at.second ? 1 : -1) * normalOf(c, point);
 	event.speed = std::max(0., -at.rate(predicted));
 	event.share = event.speed > 0 ? std::clamp(1 - at.p.gap[at.lane] / (h * event.speed), 0., 1.) : 0;

@@ -134,16 +134,18 @@ CappedStatus WallStep<K>::solveMortar(RigidSystem<K>& s, AdmmProblem<K> problem)
 	int unsettled = 0;
 	const double h = problem.step.h, tolerated = settings.solver.tolerance * problem.step.fall;
 	const double missed = report.velocityResidual;
+	LaneArray before = ledger.velocityBefore();
+	pulses.addLift(s, before);
 	CappedStatus status;
 	std::vector<int> yielding;
 	const auto solveAgain = [&](const AdmmSettings& with) {
 		report.velocityResidual = missed;
 		status = solve(s, problem, with);
-		yielding = mortar.yielding(s, contacts, ledger.velocityBefore(), results.velocity, h, 1);
+		yielding = mortar.yielding(s, contacts, before, results.velocity, h, 1);
 		return status.residual > tolerated;
 	};
 	for (int trial = 0; trial < maxTrials; ++trial) {
-		mortar.begin(s, contacts, ledger.velocityBefore(), h);
+		mortar.begin(s, contacts, before, problem.step);
 		problem.mortar = mortar.rows;
 		problem.strength = &mortar.strength;
 		bool isMissed = solveAgain(settings.solver);
@@ -154,13 +156,31 @@ CappedStatus WallStep<K>::solveMortar(RigidSystem<K>& s, AdmmProblem<K> problem)
 		}
 		unsettled = isMissed ? int(yielding.size()) : 0;
 		if (isMissed)
-			yielding = mortar.yielding(s, contacts, ledger.velocityBefore(), results.velocity, h, 1 / Mortar<K>::deadZone);
+			yielding = mortar.yielding(s, contacts, before, results.velocity, h, 1 / Mortar<K>::deadZone);
 		if (yielding.empty())
 			break;
 		mortar.letGo(s, contacts, yielding, h);
 	}
 	report.unsettled += unsettled;
 	return status;
+}
+
+// Each trial lets go a joint or is the last.
+template <class K>
+CappedStatus WallStep<K>::solveMortarAtInstant(RigidSystem<K>& s, AdmmProblem<K> problem, const AdmmSettings& solverSettings)
+{
+	const double missed = report.velocityResidual;
+	for (;;) {
+		mortar.begin(s, contacts, ledger.velocityBefore(), problem.step);
+		problem.mortar = mortar.rows;
+		problem.strength = &mortar.strength;
+		report.velocityResidual = missed;
+		const CappedStatus status = solve(s, problem, solverSettings);
+		const std::vector<int> strained = mortar.strained(s, contacts, results.states, results.velocity);
+		if (strained.empty() || !status.finite)
+			return status;
+		mortar.letGo(s, contacts, strained, problem.step.h);
+	}
 }
 
 // Two things happen between two steps: first the impacts of the joints that landed in the last one, then the jumps of the base.
@@ -211,16 +231,17 @@ CappedStatus WallStep<K>::solveInstant(RigidSystem<K>& s, const std::vector<Spin
 {
 	loads.assign(contacts.bodies().velocity().size(), all(0));
 	contacts.limitMoved(s, 0);
-	mortar.begin(s, contacts, ledger.velocityBefore(), 0);
 	// A jump of the base gets the stricter bound, since it may have no solution where nothing slips.
 	const double missed = rows.empty() ? settings.solver.tolerance : tolerance::wall::missedImpact;
 	AdmmSettings ofInstant = settings.solver;
 	ofInstant.instantEnough = std::min(ofInstant.instantEnough, missed / 2);
-	const CappedStatus status = solve(s, {contacts, instant, loads, none, rows, {}, {}, &mortar.strength},
-	                                  ofInstant); // ties have a finite stiffness: they carry no impulse
+	// Ties have a finite stiffness: they carry no impulse.
+	const CappedStatus status = solveMortarAtInstant(s, {contacts, instant, loads, none, rows}, ofInstant);
+	const MortarWork cracks =
+	    mortar.finishInstant(s, results.states, results.mortar, std::max(status.residual, settings.solver.tolerance * instant.speed));
 	contacts.points().addJammed(results.states, report.jammed);
 	report.converged &= status.residual <= missed * std::max(10 * instant.fall, instant.speed);
-	ledger.takeContacts(s, contacts, results, 0);
+	ledger.takeContacts(s, contacts, results, cracks.friction, cracks.crack, cracks.base);
 	contacts.setVelocity(results.velocity);
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		if (!s.bodies[b].prescribed)

@@ -73,6 +73,7 @@ private:
 	double advancePart(RigidSystem<K>& system, double h, bool divisible);
 	CappedStatus solveStep(RigidSystem<K>& system, const StepContext& step);
 	CappedStatus solveMortar(RigidSystem<K>& system, AdmmProblem<K> problem);
+	CappedStatus solveMortarAtInstant(RigidSystem<K>& system, AdmmProblem<K> problem, const AdmmSettings& solverSettings);
 	void takeTies(RigidSystem<K>& system, double h) const;
 	void takeInstants(RigidSystem<K>& system, const StepContext& step);
 	CappedStatus solve(RigidSystem<K>& system, const AdmmProblem<K>& problem, const AdmmSettings& solverSettings);

@@ -42,7 +42,7 @@ struct BondedOf : SceneOf<K> {
 	using SceneOf<K>::system;
 	using SceneOf<K>::up;
 
-	BondedOf() : SceneOf<K>(0.75) {}
+	explicit BondedOf(double restitution = NAN) : SceneOf<K>(0.75, restitution) {}
 
 	void setMass(double volume)
 	{
