@@ -50,7 +50,8 @@ void BlockPhys::readPoints(masonry::JointContact& contact) const
 	contact.points.clear();
 	for (size_t i = 0; i < muted.size(); ++i) {
 		const Real normal = n.dot(forces[i]);
-		contact.points.push_back({featureAt(features, i), muted[i] != 0, shears[i], normal, forces[i] - n * normal, frictionOffsets[i]});
+		contact.points.push_back(
+		    {featureAt(features, i), muted[i] != 0, shears[i], normal, forces[i] - n * normal, frictionOffsets[i], places[i]});
 	}
 	contact.energy = energy;
 	contact.bond = bond.bond;
@@ -70,6 +71,7 @@ void BlockPhys::writePoints(const masonry::JointContact& contact)
 	forces.resize(size);
 	normalForces.resize(size);
 	frictionOffsets.resize(size);
+	places.resize(size);
 	kn = contact.law.normalStiffness * contact.stiffnessArea();
 	ks = contact.law.shearStiffness * contact.stiffnessArea();
 	normalForce.setZero();
@@ -82,6 +84,7 @@ void BlockPhys::writePoints(const masonry::JointContact& contact)
 		forces[i] = contact.force(i);
 		normalForces[i] = point.normalForce;
 		frictionOffsets[i] = point.grip;
+		places[i] = point.place;
 		normalForce += point.normalForce * contact.patch.normal;
 		shearForce += point.shearForce;
 	}

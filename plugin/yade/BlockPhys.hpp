@@ -42,6 +42,7 @@ public:
 		((vector<Vector3r>, shears, , Attr::readonly, "Elastic tangential displacement of each point, of body 2 relative to body 1 [m]."))
 		((vector<Vector3r>, forces, , Attr::readonly, "Force on body 2 at each point [N]; its tangential part acts at the point's place plus frictionOffsets."))
 		((vector<Vector3r>, frictionOffsets, , Attr::readonly, "Vector from each point (geom.points) to where its tangential force acts [m]. With these offsets a face that turns on its bed has the torque of an even pressure."))
+		((vector<Vector3r>, places, , Attr::hidden, ""))
 		((shared_ptr<JointMat>, mortar, , Attr::readonly, "Mortar that both blocks have for this joint; None: they have none, or not the same."))
 		((int, jointRow, -1, Attr::hidden, ""))
 		((BondMemory, bond, , Attr::hidden, "")),

@@ -84,12 +84,12 @@ public:
 		((long, unlocalised, 0, Attr::readonly, "Number of points so far that closed at the end of a step because mostEvents was reached."))
 		((long, sweeps, 0, Attr::readonly, "Number of sweeps of the contact solver so far; with method='wall', of its iterations."))
 		((long, factorisations, 0, Attr::readonly, "Number of factorisations of the contact solver so far. With method='wall' one is kept for many steps."))
-		((long, failures, 0, Attr::readonly, "Number of steps so far that cannot be trusted: they missed the tolerance, or the laws of an impact or pulse; had no solution because bodies with prescribed motion press blocks from two sides; had more events than mostEvents; added or removed more energy than a sound step; or, in the walls of method='wall', left blocks deep in each other or turned a block by more than 0.25 rad. A step of walls that ends above its tolerance is not counted: see velocityResidual. One failure each is added when madeEnergy or lostEnergy reaches a twentieth of turnedOver."))
+		((long, failures, 0, Attr::readonly, "Number of steps so far that cannot be trusted: they missed the tolerance, or the laws of an impact or pulse; had no solution because bodies with prescribed motion press blocks from two sides; had more events than mostEvents; added or removed more energy than a sound step; or, in the walls of method='wall', left blocks deep in each other or turned a block by more than 0.25 rad. A step of walls that ends above its tolerance is not counted: see velocityResidual. One failure each is added when madeEnergy or lostEnergy reaches a twentieth of turnedOver, and whenever it has grown tenfold since."))
 		((string, firstFailure, "", Attr::readonly, "Description of the first failure: time, blocks and residual. Steps whose residual is below 1e-6 of the speed that gravity gives in a step are counted but not described."))
 		((Real, potentialShift, 0, Attr::hidden, "From the potential energy of the poses to that which belongs to the velocities of the walls of method='wall', after the last step [J]."))
-		((bool, toldMade, false, Attr::hidden, ""))
+		((Real, toldMade, 0, Attr::hidden, ""))
 		((Real, lift, 0, Attr::hidden, "Energy that lifts all blocks by the smallest half size, the largest so far [J]."))
-		((bool, toldLost, false, Attr::hidden, ""))
+		((Real, toldLost, 0, Attr::hidden, ""))
 		((RigidMemory, memory, , Attr::hidden, "")),
 		/* ctor */,
 		.add_property("kinetic", &MoreauJeanIntegrator::kinetic, "Kinetic energy now [J].")

@@ -35,7 +35,7 @@ public:
 		((bool, started, false, Attr::readonly, "Whether the bodies have been put in equilibrium on their joints."))
 		MASONRY_IMPACT_COLUMNS
 		((Real, worstResidual, 0, Attr::readonly, "Largest residual of the impulse problems so far [m/s]; that of accelerations is multiplied by the time step."))
-		((long, failures, 0, Attr::readonly, "Number of impulse problems so far that missed their laws (residual above 1e-8 of their speed). One failure each is added when madeEnergy reaches 0.75 % or lostEnergy 5 % of turnedOver, and when blocks first press deeper into each other than 2 % of the smallest half size."))
+		((long, failures, 0, Attr::readonly, "Number of impulse problems so far that missed their laws (residual above 1e-8 of their speed). One failure each is added when madeEnergy reaches 0.75 % or lostEnergy 5 % of turnedOver, whenever it has grown tenfold since, and when blocks first press deeper into each other than 2 % of the smallest half size."))
 		((Real, madeEnergy, 0, Attr::readonly, "Energy that integration errors have added so far [J]; lost energy is not subtracted. Causes: a spring acts from the start of the step in which its point closes, or to the end of the step in which it opens; a corner that passes to another face, or becomes the new pivot, is suddenly deeper or stiffer. Use a smaller dt, a smaller penetration or rigid blocks to reduce it."))
 		((Real, lostEnergy, 0, Attr::readonly, "Energy that integration errors have removed so far, for the same causes [J]; dashpots, friction and impacts are not part of it."))
 		((Real, turnedOver, 0, Attr::readonly, "Largest value so far of kinetic and elastic energy plus all dissipated energy [J]."))
@@ -54,8 +54,8 @@ public:
 		((vector<Real>, bondedState, , Attr::readonly, "Numbers of each joint that has been bonded, in rows of 13 (dem.damage): centre [m], area [m^2], mean and largest damage, share of the damage by tension, largest opening and slip of its cracks [m], energies spent in tension and in shear [J], time of the first crack and of the last one [s]."))
 		((vector<Real>, bondsAsked, , Attr::readonly, "Joints that dem.bond has asked for and the next step makes, in rows of 9: two ids and the law of the mortar."))
 		((Real, tieEnergy, 0, Attr::hidden, "Elastic energy of the ties in elastPotential [J]."))
-		((bool, toldMade, false, Attr::hidden, ""))
-		((bool, toldLost, false, Attr::hidden, ""))
+		((Real, toldMade, 0, Attr::hidden, ""))
+		((Real, toldLost, 0, Attr::hidden, ""))
 		((bool, toldDeep, false, Attr::hidden, ""))
 		((long, lastStep, -1, Attr::hidden, "")),
 		/* ctor */,

@@ -11,7 +11,7 @@
 
 namespace yade {
 
-/// Sums up what steps make and lose. Returns a sentence where either has come to matter: once.
+/// Sums up what steps make and lose. Returns a sentence where either has come to matter, and again where it has grown tenfold.
 string MoreauJeanIntegrator::addErrors()
 {
 	turnedOver = std::max(turnedOver, stepErrors.kinetic + frictDissip + impactDissip + crackDissip);
@@ -20,10 +20,9 @@ string MoreauJeanIntegrator::addErrors()
 	lift = std::max(lift, stepErrors.lift); // while gravity is switched off, errors are no larger than with it
 	const Real most = masonry::maxUnexplained(turnedOver, lift);
 	string text;
-	const auto look = [&](Real energy, const char* what, bool& told) {
-		if (told || !(energy > most))
+	const auto look = [&](Real energy, const char* what, Real& told) {
+		if (!masonry::isWorthTelling(energy, most, told))
 			return;
-		told = true;
 		const string share = turnedOver > 0 ? sentence(", ", 100 * energy / turnedOver, " % of what the scene has turned over") : "";
 		text += sentence("the energy that has ", what, " since the start comes to ", energy, " J", share, ": do not trust what follows. ");
 	};
@@ -118,11 +117,11 @@ void MoreauJeanIntegrator::count(const masonry::StepReport& report)
 	if (onTrouble == "stop")
 		throw std::runtime_error(text.str() + (unsettled ? " Or" : " Give dem.engines() a smaller dt, or") +
 		                         " set MoreauJeanIntegrator.onTrouble='continue'.");
-	if (first && onTrouble != "count")
-		LOG_WARN(firstFailure << " The run goes on; MoreauJeanIntegrator.failures counts such steps."
-		                      << (jammed.empty() && !unsettled
-		                              ? " A smaller dt of dem.engines() may help; dem.compare() tells whether the answer depends on it."
-		                              : ""));
+	if ((first || !sums.empty()) && onTrouble != "count")
+		LOG_WARN(text.str() << " The run goes on; MoreauJeanIntegrator.failures counts such steps."
+		                    << (jammed.empty() && !unsettled
+		                            ? " A smaller dt of dem.engines() may help; dem.compare() tells whether the answer depends on it."
+		                            : ""));
 }
 
 } // namespace yade

@@ -235,14 +235,13 @@ void CompliantStep::checkEnergies(CompliantReport& report)
 	for (const RigidBody<Space>& body : system.bodies)
 		if (!body.prescribed)
 			lifted += body.mass * system.gravity.norm() * std::sqrt(body.inertia.minCoeff() / body.mass);
-	const auto tell = [this](bool isBeyond, bool& told) {
-		const bool tells = isBeyond && !told;
-		told |= tells;
+	const auto tell = [this](double energy, double most, double& told) {
+		const bool tells = isWorthTelling(energy, most, told);
 		run.failures += tells;
 		return tells;
 	};
-	report.makes = tell(e.made > maxUnexplained(e.turnedOver, lifted, tolerance::madeByJoints), run.hasMade);
-	report.loses = tell(e.lost > maxUnexplained(e.turnedOver, lifted), run.hasLost);
+	report.makes = tell(e.made, maxUnexplained(e.turnedOver, lifted, tolerance::madeByJoints), run.toldMade);
+	report.loses = tell(e.lost, maxUnexplained(e.turnedOver, lifted), run.toldLost);
 }
 
 // A landing that presses a spring in by more than 2 % of the smaller block is no rigid impact any more: the corner passes to other faces

@@ -39,20 +39,22 @@ struct CompliantRun {
 	CompliantEnergies energies;
 	std::vector<std::pair<int, JointLoad>> reactions; // on each prescribed body that has joints, in the last step
 	double worstResidual {0};                         // of the impulse problems, m/s
-	// Impulse problems that have missed their laws, and one for each of: too much energy made, too much lost, a joint pressed in too deep.
+	// Impulse problems that have missed their laws, and one for each time that too much energy made or lost is told of, or a joint pressed
+	// in too deep.
 	long failures {0};
-	bool hasMade {false}, hasLost {false}, isDeep {false};
+	double toldMade {0}, toldLost {0}; // energies when they were last told of, J
+	bool isDeep {false};
 };
 
 // The results of one step.
 struct CompliantReport {
 	bool moved {false};                // bodies have other poses or velocities than before
 	std::vector<ImpactRecord> impacts; // and landings
+	bool makes {false}, loses {false}; // more energy than the results can be trusted with; told again where it has grown much
 	// Told once in a run:
-	bool missesLaws {false};           // impulse problems have no solution; the residual is that of the system
-	bool makes {false}, loses {false}; // more energy than the results can be trusted with
-	int deep {-1};                     // the contact that is pressed in too deep for an impact of rigid blocks
-	double depth {0};                  // of that, by the smallest half size of its bodies
+	bool missesLaws {false}; // impulse problems have no solution; the residual is that of the system
+	int deep {-1};           // the contact that is pressed in too deep for an impact of rigid blocks
+	double depth {0};        // of that, by the smallest half size of its bodies
 };
 
 // Jumps of the base's velocity in this step, in order of time. Impacts may cause them.

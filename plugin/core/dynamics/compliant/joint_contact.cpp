@@ -156,9 +156,10 @@ bool hasPointsOf(const JointContact& contact, const ContactPatch& patch)
 // A point without a past begins in the middle of the life of its joint: its shear is that of the nearest point with a past, or the mean of
 // the old points where none of them is left. Otherwise a corner that splits in two would lose its force or a part of it, and would give
 // energy when it is whole again.
-void takePoints(JointContact& contact, const ContactPatch& patch)
+void takePoints(JointContact& contact)
 {
 	const auto old = contact.points;
+	const auto& now = contact.patch.points;
 	const bool rocking = contact.rocking();
 	Vector3 mean = Vector3::Zero();
 	for (const JointPoint& point : old)
@@ -169,7 +170,7 @@ void takePoints(JointContact& contact, const ContactPatch& patch)
 	const auto nearestShear = [&](const PatchPoint& point) {
 		double least = std::numeric_limits<double>::infinity();
 		Vector3 shear = mean;
-		for (const PatchPoint& other : patch.points)
+		for (const PatchPoint& other : now)
 			if (const auto past = pastOf(other); past != old.end())
 				if (const double distance = (other.position1 - point.position1).squaredNorm(); distance < least) {
 					least = distance;
@@ -178,19 +179,33 @@ void takePoints(JointContact& contact, const ContactPatch& patch)
 		return shear;
 	};
 	contact.points.clear();
-	for (const PatchPoint& point : patch.points) {
+	for (const PatchPoint& point : now) {
 		const auto past = pastOf(point);
 		contact.points.push_back(past != old.end() ? *past : JointPoint {point.feature, rocking, nearestShear(point)});
 	}
+	for (int i = 0; i < contact.size(); ++i) {
+		JointPoint& point = contact.points[i];
+		if (pastOf(now[i]) != old.end())
+			continue;
+		point.shearForce = -contact.shearStiffness(i) * point.shear;
+		point.place = contact.position(i);
+		contact.replaced.push_back(point); // what it takes over
+		contact.replaced.back().shearForce *= -1;
+	}
+	for (const JointPoint& point : old)
+		if (std::none_of(now.begin(), now.end(), [&](const PatchPoint& p) { return p.feature == point.feature; }))
+			contact.replaced.push_back(point);
 }
 
 } // namespace
 
 void renewPatch(JointContact& contact, const ContactPatch& patch)
 {
-	if (!hasPointsOf(contact, patch))
-		takePoints(contact, patch);
+	const bool hasPoints = hasPointsOf(contact, patch);
 	contact.patch = patch;
+	contact.replaced.clear();
+	if (!hasPoints)
+		takePoints(contact);
 	for (int i = 0; i < patch.size(); ++i) {
 		// The joint's plane has turned with the bodies: keep the shear in it, at its length.
 		Vector3& shear = contact.points[i].shear;
@@ -198,6 +213,7 @@ void renewPatch(JointContact& contact, const ContactPatch& patch)
 		shear -= patch.normal * patch.normal.dot(shear);
 		if (length > 0 && shear.norm() > 0)
 			shear *= length / shear.norm();
+		contact.points[i].place = contact.position(i);
 	}
 	followPatch(contact);
 }

@@ -50,6 +50,7 @@ struct JointPoint {
 	double normalForce {0};               // N_i on body 2 along the normal, N
 	Vector3 shearForce {Vector3::Zero()}; // T_i on body 2, N
 	Vector3 grip {Vector3::Zero()};       // from the point to where T_i acts, in the plane of the joint, m
+	Vector3 place {Vector3::Zero()};      // of the point in the last patch, global, m
 };
 
 struct JointEnergy {
@@ -78,6 +79,8 @@ struct JointContact {
 	JointLaw law;
 	PerPoint<JointPoint> points; // parallel to patch.points
 	JointEnergy energy;
+	// Forces of the last step at points that the present patch has no more, less those that points without a past have taken over.
+	PerPoint<JointPoint> replaced;
 	double turnShare {1}; // r of the present patch
 	PointValues springs;  // N_i of the springs at the present gaps, of the points that are not muted, N
 	// Mortar (mortar_bond.hpp); none: a dry joint. Copies of a contact share it.

@@ -33,15 +33,27 @@ struct PointMotions { // of body 2 relative to body 1 over the step that ends no
 	PointValues approaches; // along the normal, m/s
 };
 
-PointMotions motionsOf(const JointContact& contact, const RigidBody<Space>& body1, const RigidBody<Space>& body2, double dt)
+PointMotions motionsOf(const JointContact& contact, const StepMotion& motion1, const StepMotion& motion2)
 {
-	const StepMotion motion1(body1, dt), motion2(body2, dt);
 	PointMotions result;
 	for (int i = 0; i < contact.size(); ++i) {
 		result.velocities.push_back(motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i)));
 		result.approaches.push_back(-contact.patch.normal.dot(result.velocities[i]));
 	}
 	return result;
+}
+
+// Returns the work of the bodies on the replaced forces, J. `spin`: of body 2 relative to body 1. Springs have changed their points without
+// a change of their energy, so that this is what dashpots had of those forces.
+double takenByReplaced(const JointContact& contact, const StepMotion& motion1, const StepMotion& motion2, const Vector3& spin, double dt)
+{
+	const Vector3& n = contact.patch.normal;
+	double power = 0; // of the forces on body 2
+	for (const JointPoint& old : contact.replaced) {
+		const Vector3 velocity = motion2.velocityAt(old.place) - motion1.velocityAt(old.place);
+		power += old.normalForce * n.dot(velocity) + old.shearForce.dot(velocity + n.dot(spin) * n.cross(old.grip));
+	}
+	return -0.5 * power * dt;
 }
 
 // The part of a shear force that friction can bear.
@@ -110,7 +122,8 @@ void updateCorners(JointContact& contact, const RigidBody<Space>& body1, const R
 {
 	const Vector3& n = contact.patch.normal;
 	const double mass = reducedMass(body1, body2), dampingShear = contact.dampingShear(mass);
-	const auto [velocities, rates] = motionsOf(contact, body1, body2, dt);
+	const StepMotion motion1(body1, dt), motion2(body2, dt);
+	const auto [velocities, rates] = motionsOf(contact, motion1, motion2);
 	contact.energy = {};
 	const auto before = contact.points;
 	PointValues depths(contact.size()), oldDepths(contact.size());
@@ -125,7 +138,8 @@ void updateCorners(JointContact& contact, const RigidBody<Space>& body1, const R
 	// The forces take energy from the bodies: dashpots and slip dissipate a part and never give it back, and the springs take the rest.
 	// A spring without any force comes back by its dashpot. The leapfrog scheme's own work of a force over a step is that of the mean
 	// of its values at the two ends: springs do not store all that they take where points meet or part within the step.
-	double byDashpots = 0; // taken by those of the normal springs, J: below zero where they give
+	double byDashpots = takenByReplaced(contact, motion1, motion2, spin, dt); // of the normal springs, J: below zero where they give
+	contact.energy.damping += byDashpots;
 	for (int i = 0; i < contact.size(); ++i) {
 		JointPoint& point = contact.points[i];
 		const JointPoint& old = before[i];

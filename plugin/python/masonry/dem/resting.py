@@ -1,13 +1,12 @@
 """Whether the blocks are at rest."""
 
 import numpy as np
+from masonry import _core
 from masonry.dem.bodies import blocks, reach
 from masonry.dem.joint_engine import joint_engine
 from masonry.dem.reactions import joint_forces
 from yade import O, wrapper
 
-# Speed of rest relative to sqrt(g R), as in plugin/core/tolerances.hpp.
-_REST_SPEED = 1e-4
 # Largest resultant of the forces on a block at rest, relative to the sum of their sizes. Where a rocking block turns back it is 0.4 times the angle, in rad, that is
 # left to the critical one; walls of method='wall' that have come to rest have up to 0.02, other methods round-off.
 _UNBALANCED, _UNBALANCED_IN_WALLS = 4e-3, 5e-2
@@ -30,7 +29,7 @@ def at_rest():
     free = [body for body in blocks() if body.dynamic]
     state = np.array([(*body.state.vel, *body.state.angVel, body.state.mass, reach(body)) for body in free])
     speed, spin, mass, reaches = np.linalg.norm(state[:, :3], axis=1), np.linalg.norm(state[:, 3:6], axis=1), state[:, 6], state[:, 7]
-    if (speed > _REST_SPEED * np.sqrt(strength * reaches)).any() or (spin > _REST_SPEED * np.sqrt(strength / reaches)).any():
+    if (speed > _core.REST_SPEED * np.sqrt(strength * reaches)).any() or (spin > _core.REST_SPEED * np.sqrt(strength / reaches)).any():
         return False
     force = np.array([O.forces.f(body.id, True) for body in free]) + mass[:, None] * gravity
     sizes = mass * strength

@@ -151,3 +151,21 @@ TEST_CASE("A joint that is pressed in too deep counts as one failure")
 		CHECK(blocks.step.run.failures == told);
 	}
 }
+
+// A cube at rest, to which energy from nothing is ascribed, doubled in each step: it is told of once in each ten-fold growth.
+TEST_CASE("A run tells again of energy that has come from nothing or vanished when it has grown tenfold")
+{
+	CompliantBlocks blocks = blocksOnBase(1e-5, 0.6, 0.7);
+	blocks.addBox({1, 1, 1}, {0, 0, 0.5}, density, false);
+	chooseStep(blocks, 0.1);
+	int made = 0, lost = 0;
+	for (double energy = 1; energy < 2e4; energy *= 2) { // the weight is lifted by 1e-4 of the size of the cube by 0.8 J
+		blocks.step.run.energies.made = blocks.step.run.energies.lost = energy;
+		blocks.advance();
+		made += blocks.report.makes;
+		lost += blocks.report.loses;
+	}
+	CHECK(made == 4); // at 1, 16, 256 and 4096 J
+	CHECK(lost == made);
+	CHECK(blocks.step.run.failures == made + lost);
+}

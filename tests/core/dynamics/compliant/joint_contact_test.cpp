@@ -2,6 +2,7 @@
 #include "contact/collide.hpp"
 #include "dynamics/compliant/joint_system.hpp"
 #include "impact/impulse_problem.hpp"
+#include <algorithm>
 #include <catch.hpp>
 #include <cmath>
 
@@ -406,4 +407,30 @@ TEST_CASE("Slip and dashpots only dissipate, in joints that move to and fro")
 	}
 	CHECK(dissipated > 0);
 	CHECK(unexplained < 1e-6 * dissipated); // no point meets or parts
+}
+
+// Two equal boxes, flush: as the upper one goes to and fro across its bed, vertices of the patch become crossings of edges and back.
+// Leapfrog: the work of a force over a step is that of the mean of its values at the two ends.
+TEST_CASE("What a joint takes in a step is the work of its forces, whichever points they act at")
+{
+	JointLaw damped = law;
+	damped.dampingRatio = 0.5;
+	PressedBlocks blocks(0, 1e-6, damped);
+	blocks.move(Vector3::Zero());
+	int renewals = 0;
+	double most = 0;
+	for (int k = 0; k < 40; ++k) {
+		const Vector3 before = blocks.total(), step(3e-3 * std::cos(0.7 * k), 2e-3 * std::sin(0.5 * k), 2e-8 * std::cos(0.3 * k));
+		const PerPoint<JointPoint> old = blocks.contact.points;
+		blocks.move(step);
+		for (const JointPoint& point : old)
+			renewals += std::none_of(blocks.contact.points.begin(), blocks.contact.points.end(),
+			                         [&](const JointPoint& p) { return p.feature == point.feature; });
+		const JointEnergy& energy = blocks.contact.energy;
+		const double work = -0.5 * (before + blocks.total()).dot(step);
+		most = std::max(most, std::abs(work));
+		CAPTURE(k);
+		CHECK(std::abs(energy.taken + energy.friction + energy.damping - work) < 1e-9 * most);
+	}
+	CHECK(renewals > 5);
 }

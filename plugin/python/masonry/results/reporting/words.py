@@ -3,6 +3,8 @@
 import functools
 import math
 
+from masonry import _core
+
 _GRAVITY = 9.80665  # m/s^2, as records are given in g
 _SMALL = 0.1  # share of a drift
 _LEAST = 1e-3  # smaller drifts are none
@@ -138,15 +140,11 @@ def _of_drift(way, height, moved):
     return f"{said}: not small beside the largest drift; a run with a smaller tolerance or step tells whether it matters (dem.compare)"
 
 
-# Share of the energy turned over from which energy that steps make or lose spoils a run: what a run warns of (core/tolerances.hpp: madeShare, and madeByJoints of compliant joints).
-_SPOILT, _SPOILT_BY_JOINTS = 0.05, 7.5e-3
-
-
 def _distrust(about):
-    """Sentences on energy that came from nothing or vanished, where it is too much to trust the run."""
+    """Sentences on energy that came from nothing or vanished, where it is the share of what was turned over of which the run has warned."""
     given, compliant = about.get("solver", {}), about.get("model", {}).get("model") == "compliant"
     turned, said = given.get("turnedOver") or 0, []
-    for name, what, most in (("madeEnergy", "come from nothing", _SPOILT_BY_JOINTS if compliant else _SPOILT), ("lostEnergy", "vanished", _SPOILT)):
+    for name, what, most in (("madeEnergy", "come from nothing", _core.MADE_BY_JOINTS if compliant else _core.MADE_SHARE), ("lostEnergy", "vanished", _core.MADE_SHARE)):
         energy = given.get(name) or 0
         if turned > 0 and energy > most * turned:
             said.append(f"Do not trust this run: {quantity(energy, 'J')} of energy have {what}, {100 * energy / turned:.2g} % of what was turned over")
