@@ -190,24 +190,6 @@ MASONRY_INLINE void passGroups(const Pass<K>& pass, Lanes& worst)
 		                           worst);
 }
 
-// The friction that a solve ends with is within the cone of the pressures that it ends with: the damped bound may be above them.
-template <class K, bool bonded>
-MASONRY_INLINE void endGroups(const Pass<K>& pass)
-{
-	const auto [groups, strength, states, penalties, results, begin, end, velocity, force, step] = pass;
-	for (int g = begin; g < end; ++g) {
-		const Mask rough = groups[g].friction >= maxFriction;
-		for (int k = 0; k < groups[g].count; ++k) {
-			PointState<K>& p = states[g][k];
-			Lanes& bound = results[g][k].bound;
-			bound = smaller(bound, bonded ? p.pn + strength[g].shift[k] : p.pn);
-			const auto within = clip(p.pt, groups[g].friction * (rough ? p.pn : bound));
-			p.zt = p.zt + (within - p.pt) * penalties[g][k].resistance;
-			p.pt = within;
-		}
-	}
-}
-
 template <class K, bool bonded>
 MASONRY_INLINE void startGroups(const Pass<K>& pass)
 {
@@ -266,11 +248,6 @@ template <class K>
 MASONRY_INLINE void passGroups(const Pass<K>& pass, Lanes& worst)
 {
 	pass.strength ? passGroups<K, true>(pass, worst) : passGroups<K, false>(pass, worst);
-}
-template <class K>
-MASONRY_INLINE void endGroups(const Pass<K>& pass)
-{
-	pass.strength ? endGroups<K, true>(pass) : endGroups<K, false>(pass);
 }
 
 } // namespace masonry::wall

@@ -34,8 +34,6 @@ MASONRY_LANES void startPass(const Pass<Plane>& pass) { startGroups(pass); }
 MASONRY_LANES void startPass(const Pass<Space>& pass) { startGroups(pass); }
 MASONRY_LANES void lawPass(const Pass<Plane>& pass, Lanes& worst) { passGroups(pass, worst); }
 MASONRY_LANES void lawPass(const Pass<Space>& pass, Lanes& worst) { passGroups(pass, worst); }
-MASONRY_LANES void endPass(const Pass<Plane>& pass) { endGroups(pass); }
-MASONRY_LANES void endPass(const Pass<Space>& pass) { endGroups(pass); }
 
 } // namespace
 
@@ -336,10 +334,6 @@ SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& se
 		}
 		least = std::min(least, status.residual);
 	} while (goesOn(step, settings, status));
-	if (!atRest) { // else unfinished iterations within the tolerance would let it creep
-		const Step end = stepOf(step, settings, atRest);
-		problem.contacts.layout().allParts([&](const Part& part, int) { endPass(passOf(problem, part, end, results)); });
-	}
 	if (!step.instant) {
 		const double iterations = usualIterations(settings);
 		saved = cold ? 0 : std::clamp(saved + iterations - status.iterations, 0., settings.reserve * iterations);
