@@ -75,6 +75,26 @@ TEMPLATE_TEST_CASE("a brick on a base that jumps away keeps what its joint does 
 	CHECK(made / energy == Approx(0).margin(1e-3));
 }
 
+TEMPLATE_TEST_CASE("a brick that is pulled flies on under its load when a jump has broken its joint", "", Plane, Space)
+{
+	using K = TestType;
+	Struck<K> s;
+	s.add(0.2, 0.1, 0, 0.05);
+	const MortarLaw law = lawOf(0.25e6);
+	s.bond(law);
+	s.weightless();
+	RigidBody<K>& brick = s.system.bodies[1];
+	const double pull = 1000, energy = law.fractureEnergy * 0.2 * depth; // N, J; a fifth of the strength
+	brick.force[Struck<K>::up] = pull;
+	s.run(0.02, 1e-3);
+	const double begin = s.system.time + 2.5e-3;
+	s.strike(3 * energy, -K::Vector::Unit(Struck<K>::up), 2.5e-3);
+	s.run(0.006, 1e-3);
+	CHECK(s.damage() == 1);
+	const double speed = brick.velocity[Struck<K>::up] - s.system.bodies[0].velocity[Struck<K>::up];
+	CHECK(speed == Approx(std::sqrt(4 * energy / brick.mass) + pull / brick.mass * (s.system.time - begin)).epsilon(2e-3));
+}
+
 // The brick is flat, so that little of its energy goes into turns.
 TEMPLATE_TEST_CASE("a brick on a base that jumps aside keeps what the shear of its joint does not take", "", Plane, Space)
 {
