@@ -160,6 +160,15 @@ void Mortar<K>::find(const RigidSystem<K>& s, const ContactSet<K>& c)
 		}
 }
 
+// A joint that an instant has broken comes with the tension of its corners in the step before, which a pass without strengths would keep.
+template <class K>
+bool arePulled(const ContactSet<K>& c, const MortarCorners& corners)
+{
+	return std::any_of(corners.begin(), corners.end(), [&](const MortarCorner& corner) {
+		return c.points().states()[corner.slot.group][corner.point].pn[corner.slot.lane] < 0;
+	});
+}
+
 template <class K>
 void Mortar<K>::begin(const RigidSystem<K>& s, const ContactSet<K>& c, const LaneArray& before, const StepContext& step)
 {
@@ -171,9 +180,11 @@ void Mortar<K>::begin(const RigidSystem<K>& s, const ContactSet<K>& c, const Lan
 	const double time = mortarTime(step);
 	for (int j = 0; j < int(s.mortar.size()); ++j) {
 		const MortarJoint<K>& joint = s.mortar[j];
-		if (corners[j].empty() || joint.isBroken())
+		if (corners[j].empty() || (joint.isBroken() && !arePulled(c, corners[j])))
 			continue;
 		strength.resize(c.layout().groups().size());
+		if (joint.isBroken())
+			continue;
 		if (joint.isRigid)
 			for (const MortarCorner& corner : corners[j]) {
 				Strength<K>& of = strength[corner.slot.group];

@@ -75,6 +75,26 @@ TEMPLATE_TEST_CASE("a brick on a base that jumps away keeps what its joint does 
 	CHECK(made / energy == Approx(0).margin(1e-3));
 }
 
+TEMPLATE_TEST_CASE("a brick that is pulled flies on under its load when a jump has broken its joint", "", Plane, Space)
+{
+	using K = TestType;
+	Struck<K> s;
+	s.add(0.2, 0.1, 0, 0.05);
+	const MortarLaw law = lawOf(0.25e6);
+	s.bond(law);
+	s.weightless();
+	RigidBody<K>& brick = s.system.bodies[1];
+	const double pull = 1000, energy = law.fractureEnergy * 0.2 * depth; // N, J; a fifth of the strength
+	brick.force[Struck<K>::up] = pull;
+	s.run(0.02, 1e-3);
+	const double begin = s.system.time + 2.5e-3;
+	s.strike(3 * energy, -K::Vector::Unit(Struck<K>::up), 2.5e-3);
+	s.run(0.006, 1e-3);
+	CHECK(s.damage() == 1);
+	const double speed = brick.velocity[Struck<K>::up] - s.system.bodies[0].velocity[Struck<K>::up];
+	CHECK(speed == Approx(std::sqrt(4 * energy / brick.mass) + pull / brick.mass * (s.system.time - begin)).epsilon(2e-3));
+}
+
 // The brick is flat, so that little of its energy goes into turns.
 TEMPLATE_TEST_CASE("a brick on a base that jumps aside keeps what the shear of its joint does not take", "", Plane, Space)
 {
@@ -139,13 +159,13 @@ TEMPLATE_TEST_CASE("a wall that a jump of its base cracks has a mirror image and
 
 namespace {
 
-// All blocks turn about the left edge of the lowest one.
+// All blocks turn about an edge at this place.
 template <class K>
-void turn(BondedOf<K>& s, double spin, double edge)
+void turn(BondedOf<K>& s, double spin, double edge, double height = 0)
 {
 	for (size_t b = 1; b < s.system.bodies.size(); ++b) {
 		RigidBody<K>& body = s.system.bodies[b];
-		const typename K::Vector arm = body.pose.position - edge * K::Vector::Unit(0);
+		const typename K::Vector arm = body.pose.position - edge * K::Vector::Unit(0) - height * K::Vector::Unit(BondedOf<K>::up);
 		body.velocity.setZero();
 		body.velocity[0] = -spin * arm[K::dimension - 1];
 		body.velocity[K::dimension - 1] = spin * arm[0];
@@ -195,6 +215,30 @@ TEMPLATE_TEST_CASE("a joint lands with the restitution that is asked once its mo
 	REQUIRE(!found.empty());
 	CHECK(found[0].joint.restitution() == Approx(C).epsilon(1e-6));
 	CHECK_FALSE(found[0].capped);
+}
+
+// The block stands on two others, rocks on the one that it is bonded to, and lands on the other.
+TEMPLATE_TEST_CASE("a block has no given restitution while one of its supports has mortar", "", Plane, Space)
+{
+	using K = TestType;
+	const bool isBonded = GENERATE(false, true);
+	CAPTURE(isBonded);
+	BondedOf<K> s(0.5);
+	s.add(0.2, 0.1, -0.1, 0.05);
+	s.add(0.2, 0.1, 0.1, 0.05);
+	s.add(0.2, 0.6, 0, 0.4);
+	MortarLaw law = lawOf(1e3);
+	law.fractureEnergy = 1;
+	law.shearFractureEnergy = 7;
+	s.bond(law);
+	for (MortarJoint<K>& joint : s.system.mortar)
+		if (const int other = std::min(joint.body1, joint.body2); std::max(joint.body1, joint.body2) == 3 && (other == 1 || !isBonded))
+			breakJoint(joint);
+	turn(s, -0.15, 0.1, 0.1);
+	for (int b : {1, 2})
+		s.system.bodies[b].velocity.setZero();
+	const auto found = impactsOf(s, 0.5, 1e-3);
+	CHECK(found.empty() == isBonded);
 }
 
 // The stack is one body whose lowest joint is dry.
