@@ -159,35 +159,36 @@ class Account:
     with the forces F and torques F^2 dt^2/8m (docs/numerics.md, energy)."""
 
     def __init__(self):
-        self.start, self.off = None, 0.0
+        self.start, self.off, self.beyond = None, 0.0, 0.0
         self.free = [b for b in O.bodies if b.dynamic]
         self.gravity = next(e for e in O.engines if isinstance(e, NewtonIntegrator)).gravity
 
     def look(self):
-        beyond = 0.0
+        self.beyond = 0.0
         for b in self.free:
             s = b.state
             force, torque = O.forces.f(b.id, True) + s.mass * self.gravity, s.ori.conjugate() * O.forces.t(b.id, True)
-            beyond += O.dt**2 / 8 * (force.dot(force) / s.mass + sum(torque[k] ** 2 / s.inertia[k] for k in range(3)))
+            self.beyond += O.dt**2 / 8 * (force.dot(force) / s.mass + sum(torque[k] ** 2 / s.inertia[k] for k in range(3)))
         e = dem.energy()
-        total = sum(e.values()) - 2 * e["baseWork"] - beyond
+        total = sum(e.values()) - 2 * e["baseWork"] - self.beyond
         self.start = total if self.start is None else self.start  # after the first step, which knows the kick
         self.off = max(self.off, abs(total - self.start))
 
 
-def go_on(joints, until, energies):
-    """Runs until a time; returns the largest depth, and the largest difference of the account."""
+def go_on(joints, until):
+    """Runs until a time; returns the largest depth, the largest difference of the account (J), and the energies."""
     account, deepest, k = Account(), 0.0, 0
+    energies = Energies(lambda: account.beyond)
     while O.time < until:
         joints.look()
         O.step()
         joints.judge()
-        energies.look()
         account.look()
+        energies.look()
         k += 1
         if k % 100 == 0:
             deepest = max(deepest, boxes.depth())
-    return deepest, account.off
+    return deepest, account.off, energies
 
 
 def run(seed):
@@ -198,8 +199,8 @@ def run(seed):
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            joints, energies = Joints(begin(seed)), Energies(lambda: 0.0)
-            deepest, off = go_on(joints, SECONDS, energies)
+            joints = Joints(begin(seed))
+            deepest, off, energies = go_on(joints, SECONDS)
             own = engine()
             row.update(gain=energies.relative_gain(), depth=deepest, off=off / max(own.turnedOver, energies.floor), damage=float(joints.wrong),
                        strength=float(max(joints.below, joints.above)), cracked=int((joints.damage[:, 1] > 0.02).sum()), failures=own.failures)

@@ -197,6 +197,8 @@ double press(JointSystem& s, const std::vector<HeldPoint>& points)
 
 void settle(JointSystem& s, const std::vector<HeldPoint>& held, double most)
 {
+	if (std::any_of(s.contacts.begin(), s.contacts.end(), [](const JointContact& contact) { return contact.isBonded(); }))
+		return hold(s);
 	const double stored = storedEnergy(s);
 	const Bodies<Space> before = s.bodies;
 	const std::vector<JointContact> contactsBefore = s.contacts;

@@ -1,6 +1,7 @@
 // Blocks settle where springs bear what rigid bodies give to the corners of a face, which may have next to no share of it. Oracle: the
 // compression of the closed face.
 #include "compliant_blocks.hpp"
+#include "dynamics/compliant/mortar_bond.hpp"
 #include "dynamics/compliant/settling.hpp"
 #include <catch.hpp>
 #include <cmath>
@@ -82,4 +83,25 @@ TEST_CASE("A load off the centre of a face presses its corners in by a plane")
 		const Vector3 x = contact.position(i);
 		CHECK(std::abs(-contact.patch.points[i].gap * stiffness / load - (1 + 12 * arm * (x.x() + x.y()))) < 1e-5);
 	}
+}
+
+// A second cube on the first one. Where mortar joins them, a way that the first one went at an instant would stretch its fibres, and
+// nothing would have done their work.
+TEST_CASE("Blocks settle unless mortar holds one of them")
+{
+	const bool isHeld = GENERATE(false, true);
+	CompliantBlocks rig = flushBlocks(0);
+	rig.addBox({1, 1, 1}, {0, 0, 1.5}, 2000, false);
+	rig.findPatches();
+	JointSystem& system = rig.step.system;
+	REQUIRE(system.contacts.size() == 2);
+	if (isHeld)
+		makeBond(system.contacts[1], system.bodies[1], system.bodies[2], {82e9, 36e9, 0.25e6, 18, 0.35e6, 125, 0.75});
+	const double load = 8000; // N
+	std::vector<HeldPoint> held;
+	for (int i = 0; i < 4; ++i)
+		held.push_back({0, i, {0, 0, load / 4}});
+	settle(system, held, std::numeric_limits<double>::infinity());
+	const double way = isHeld ? 0 : -load / stiffness;
+	CHECK(std::abs(system.bodies[1].pose.position.z() - (0.5 + way)) < 1e-15);
 }
