@@ -95,6 +95,21 @@ def test_arch_stands_with_a_thrust_within_the_bounds_of_statics():
     assert np.linalg.norm(dem.geometry(ids[7]).center - start) < 1e-3 * 0.3
 
 
+def test_flat_arch_stands_on_its_least_thrust():
+    """Its joints open until the thrust is the least that statics allow, H/W = 0.52818 (validation/convex/statics.py). Its stones then sway by the play of their
+    springs, so that joints close and hand over their pivots."""
+    voussoir = dem.BlockMat(density=2000, frictionAngle=np.arctan(0.4), restitution=0)
+    ids = dem.flat_arch(2.0, 0.4, 5, 2.0, 0.5, voussoir, springers=True)
+    for end in (ids[0], ids[-1]):
+        O.bodies[end].dynamic = False
+    starts = [O.bodies[id].state.pos for id in ids]
+    O.engines = quiet_engines(gravity=GRAVITY)
+    O.run(int(0.7 / O.dt), True)
+    weight = GRAVITY * sum(O.bodies[id].state.mass for id in ids[1:-1])
+    assert max((O.bodies[id].state.pos - start).norm() for id, start in zip(ids, starts)) < 1e-3 * 0.4
+    assert abs(dem.reactions(ids[0])["force"].sum(axis=0)[0]) / weight == pytest.approx(0.52818, rel=1e-2)
+
+
 def test_saved_and_loaded_arch_goes_on_with_the_same_bits(tmp_path):
     def state():
         return np.array([[*b.state.pos, *b.state.ori, *b.state.vel, *b.state.angVel] for b in O.bodies]).view(np.int64)
