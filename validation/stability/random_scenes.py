@@ -206,35 +206,43 @@ KINDS = {"thrown": build, "pressed": pressed, "convex": convex, "union": union, 
 
 
 class Flight:
-    """Bodies whose distance from all others is more than they go in a step get nothing but gravity."""
+    """Bodies whose distance from all others is more than they go in some steps get nothing but gravity. Distances are measured where a body has got more, and
+    not again before it can be as far away."""
 
     def __init__(self, gaps):
         """gaps: of boxes.py or polyhedra.py."""
         self.worst, self.before, self.gaps = 0.0, None, gaps
         inertia = [b.state.inertia for b in O.bodies]
         self.inertia = np.array([tuple(i) if max(i) > 0 else (1, 1, 1) for i in inertia])
+        self.free = np.array([b.dynamic for b in O.bodies])
+        self.near = np.zeros(len(O.bodies))  # steps before a body can be far enough away
 
     def look(self):
-        ids, axes, radii, first, second, gaps = self.gaps()
-        free = np.array([O.bodies[i].dynamic for i in ids])
+        states = [b.state for b in O.bodies]
+        velocity, spin = np.array([tuple(s.vel) for s in states]), np.array([tuple(s.angVel) for s in states])
+        turning = np.array([tuple(s.ori * Vector3(*(m * w for m, w in zip(inertia, s.ori.conjugate() * s.angVel)))) for s, inertia in zip(states, self.inertia)])
+        if self.before is not None:
+            speed, turned = self.before
+            change = np.abs(velocity - speed + np.array([0, 0, 9.81 * O.dt])).max(axis=1) / max(1.0, np.abs(velocity).max())
+            size = np.maximum(np.linalg.norm(turned, axis=1), self.inertia.max(axis=1))
+            error = np.where(self.free, np.maximum(change, np.linalg.norm(turning - turned, axis=1) / size), 0)
+            if (error[self.near <= 0] > FLIGHT).any():
+                error[~self.flies(velocity, spin)] = 0
+                self.worst = max(self.worst, float(error[self.near <= 0].max(initial=0)))
+        self.near -= 1
+        self.before = velocity, turning
+
+    def flies(self, velocity, spin, steps=4):
+        """Which bodies are farther from all others than two of them go in `steps` steps: they touched none in the last one."""
+        ids, _, radii, first, second, gaps = self.gaps()
         apart = np.full(len(ids), np.inf)
         np.minimum.at(apart, first, gaps)
         np.minimum.at(apart, second, gaps)
-        states = [O.bodies[i].state for i in ids]
-        velocity, spin = np.array([tuple(s.vel) for s in states]), np.array([tuple(s.angVel) for s in states])
-        own = (axes.transpose(0, 2, 1) @ spin[:, :, None])[:, :, 0]  # spins along the bodies' axes
-        turning = (axes @ (self.inertia[ids] * own)[:, :, None])[:, :, 0]
-        reach = O.dt * (np.linalg.norm(velocity, axis=1) + np.linalg.norm(spin, axis=1) * radii + 9.81 * O.dt)
-        flies = free & (apart > 4 * reach.max())
-        if self.before is not None:
-            was, speed, turned = self.before
-            both = flies & was
-            if both.any():
-                change = velocity[both] - speed[both] + np.array([0, 0, 9.81 * O.dt])
-                self.worst = max(self.worst, float(np.abs(change).max() / max(1.0, np.abs(velocity).max())))
-                size = np.maximum(np.linalg.norm(turned[both], axis=1), self.inertia[both].max(axis=1))
-                self.worst = max(self.worst, float((np.linalg.norm(turning[both] - turned[both], axis=1) / size).max()))
-        self.before = flies, velocity, turning
+        reach = O.dt * (np.linalg.norm(velocity[ids], axis=1) + np.linalg.norm(spin[ids], axis=1) * radii + 9.81 * O.dt).max()
+        self.near[ids] = np.ceil(np.clip(steps - apart / (2 * reach), 0, steps)) - 1
+        far = np.zeros(len(O.bodies), dtype=bool)
+        far[ids] = apart > 2 * steps * reach
+        return far
 
 
 def one_normal(i, compliant):

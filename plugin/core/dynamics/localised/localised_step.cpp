@@ -134,13 +134,13 @@ void LocalisedStep<K>::findContacts(RigidSystem<K>& s, ContactPair<K>& pair, boo
 	const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
 	FoundPoints<K> found = findRows(s, pair, tolerance::restSpeed * step.scales.speed, pair.memory);
 	dropIdle(found, pair, body1, body2, samePlace);
+	pair.face1 = found.face1;
+	pair.face2 = found.face2;
 	const bool same = sameFeatures(pair, found);
 	if (same && !s.moved)
 		return;
 	const ContactPair<K> before = pair;
 	pair.points.resize(found.size());
-	pair.face1 = found.face1;
-	pair.face2 = found.face2;
 	for (int i = 0; i < found.size(); ++i) {
 		ContactPoint<K>& point = pair.points[i];
 		if (!same)
