@@ -7,7 +7,7 @@ BOOST_PYTHON_MODULE(_core)
 	boost::python::docstring_options docs(true, true, false);
 	boost::python::scope().attr("__doc__") =
 	    "Exact theory of the rocking block, and geometry of boxes; arrays in, arrays out. Use it through the package masonry.";
-	// What the package has in common with runs (tolerances.hpp).
+	// The package judges runs by the tolerances by which they warn.
 	boost::python::scope().attr("MADE_SHARE") = masonry::tolerance::madeShare;
 	boost::python::scope().attr("MADE_BY_JOINTS") = masonry::tolerance::madeByJoints;
 	boost::python::scope().attr("REST_SPEED") = masonry::tolerance::restSpeed;

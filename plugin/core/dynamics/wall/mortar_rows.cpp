@@ -334,7 +334,7 @@ MortarWork Mortar<K>::finish(RigidSystem<K>& s, ContactSet<K>& c, const std::vec
 	return work;
 }
 
-// What its crack has to pull.
+// Returns the pull on a point's crack, N s.
 template <class K>
 double Mortar<K>::pullOf(const RigidSystem<K>& s, const PointStates<K>& states, const MortarRow<K>& row, double missed) const
 {

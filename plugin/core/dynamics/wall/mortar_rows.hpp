@@ -143,7 +143,7 @@ public:
 	// Damage of the step by its rows. `missed`: by which velocities may be wrong, m/s.
 	MortarWork finish(RigidSystem<K>& system, ContactSet<K>& contacts, const std::vector<MortarRow<K>>& done, double h,
 	                  double missed) const;
-	// That of an instant. `states`: impulses of the contacts.
+	// The same of an instant, where `states` are the impulses of the contacts.
 	MortarWork finishInstant(RigidSystem<K>& system, const PointStates<K>& states, const std::vector<MortarRow<K>>& done,
 	                         double missed) const;
 

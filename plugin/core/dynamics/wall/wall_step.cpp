@@ -204,7 +204,8 @@ void WallStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
 	}
 }
 
-// A step whose impulses make energy, since all of its contacts have changed, is solved again as a first step is.
+// A step whose impulses make energy, since all of its contacts have changed, is solved again as a first step is, but where mortar is left:
+// that lets go in trials of its own.
 template <class K>
 CappedStatus WallStep<K>::solve(RigidSystem<K>& s, const AdmmProblem<K>& problem, const AdmmSettings& solverSettings)
 {
@@ -216,7 +217,8 @@ CappedStatus WallStep<K>::solve(RigidSystem<K>& s, const AdmmProblem<K>& problem
 		return found;
 	};
 	CappedStatus status = solveOnce();
-	if (!step.instant && status.finite && status.residual > solverSettings.tolerance * step.fall &&
+	const bool isDry = problem.mortar.empty() && !firstOf(problem.strength);
+	if (isDry && !step.instant && status.finite && status.residual > solverSettings.tolerance * step.fall &&
 	    ledger.makesEnergy(s, contacts, results, loads, step.h)) {
 		solver.restart();
 		status = solveOnce();
