@@ -14,8 +14,7 @@ METHODS = ("wall", "localised")
 
 def ground(mu=2.0, mortar=None):
     O.reset()
-    bed = {"mortar": mortar} if mortar else {"restitution": 0}  # mortar has none
-    stone = dem.BlockMat(density=2000, frictionAngle=math.atan(mu), **bed)
+    stone = dem.BlockMat(density=2000, frictionAngle=math.atan(mu), restitution=0, mortar=mortar)
     return dem.base((12, 4, 0.2), stone), stone
 
 

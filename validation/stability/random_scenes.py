@@ -228,7 +228,7 @@ class Flight:
             error = np.where(self.free, np.maximum(change, np.linalg.norm(turning - turned, axis=1) / size), 0)
             if (error[self.near <= 0] > FLIGHT).any():
                 error[~self.flies(velocity, spin)] = 0
-                self.worst = max(self.worst, float(error[self.near <= 0].max(initial=0)))
+                self.worst = max(self.worst, float(error.max()))
         self.near -= 1
         self.before = velocity, turning
 

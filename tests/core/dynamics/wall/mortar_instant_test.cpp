@@ -19,6 +19,15 @@ struct Struck : BondedOf<K> {
 		for (RigidBody<K>& body : system.bodies)
 			body.force.setZero();
 	}
+	// A brick on the base, bonded to it.
+	MortarLaw addBrick(double width, double height)
+	{
+		this->add(width, height, 0, height / 2);
+		const MortarLaw law = lawOf(0.25e6);
+		this->bond(law);
+		weightless();
+		return law;
+	}
 	double mass() const
 	{
 		double sum = 0;
@@ -56,10 +65,7 @@ TEMPLATE_TEST_CASE("a brick on a base that jumps away keeps what its joint does 
 	const double share = GENERATE(0.5, 0.9, 1.1, 1.5, 3., 10.), step = GENERATE(1e-4, 1e-3, 4e-3);
 	CAPTURE(share, step);
 	Struck<K> s;
-	s.add(0.2, 0.1, 0, 0.05);
-	const MortarLaw law = lawOf(0.25e6);
-	s.bond(law);
-	s.weightless();
+	const MortarLaw law = s.addBrick(0.2, 0.1);
 	const double energy = law.fractureEnergy * 0.2 * depth, lost = s.lost();
 	s.strike(share * energy, -K::Vector::Unit(Struck<K>::up), 2.5 * step);
 	const double bound = 2e-3 * std::max(1., share); // velocities miss the laws by 1e-3; a point breaks at D = 0.999
@@ -79,10 +85,7 @@ TEMPLATE_TEST_CASE("a brick that is pulled flies on under its load when a jump h
 {
 	using K = TestType;
 	Struck<K> s;
-	s.add(0.2, 0.1, 0, 0.05);
-	const MortarLaw law = lawOf(0.25e6);
-	s.bond(law);
-	s.weightless();
+	const MortarLaw law = s.addBrick(0.2, 0.1);
 	RigidBody<K>& brick = s.system.bodies[1];
 	const double pull = 1000, energy = law.fractureEnergy * 0.2 * depth; // N, J; a fifth of the strength
 	brick.force[Struck<K>::up] = pull;
@@ -102,10 +105,7 @@ TEMPLATE_TEST_CASE("a brick on a base that jumps aside keeps what the shear of i
 	const double share = GENERATE(0.5, 1.5, 3.), step = GENERATE(1e-4, 1e-3);
 	CAPTURE(share, step);
 	Struck<K> s;
-	s.add(0.4, 0.02, 0, 0.01);
-	const MortarLaw law = lawOf(0.25e6);
-	s.bond(law);
-	s.weightless();
+	const MortarLaw law = s.addBrick(0.4, 0.02);
 	const double energy = law.shearFractureEnergy * 0.4 * depth;
 	s.strike(share * energy, K::Vector::Unit(0), 2.5 * step);
 	for (int k = 0; k < 5; ++k)
@@ -253,9 +253,8 @@ TEMPLATE_TEST_CASE("a bonded stack on a broken joint lands as one block with the
 	turn(s, 0.5, -0.1);
 	const auto found = impactsOf(s, 0.6, step);
 	REQUIRE(!found.empty());
-	for (const auto& impact : found) {
+	for (const auto& impact : found)
 		CHECK(impact.block == 1);
-	}
 	CHECK(found[0].joint.restitution() == Approx(C).epsilon(1e-6));
 	CHECK(s.damage() == Approx(1. / 3));
 }

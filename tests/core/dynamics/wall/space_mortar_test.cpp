@@ -204,8 +204,8 @@ TEST_CASE("a pier that cracks in space goes on with the same bits after loading"
 TEST_CASE("a joint in space that yields and is unloaded before it cracks is sound again")
 {
 	Single s;
-	s.system.bodies[1].inertia *=
-	    1e5; // it stands still within three steps, and closes; a lighter one opens on by more than the dead zone, which counts
+	// The brick stands still within three steps, and closes; a lighter one opens on by more than the dead zone, which counts.
+	s.system.bodies[1].inertia *= 1e5;
 	const Space::Velocity rest = s.system.bodies[1].force;
 	Space::Velocity load = Space::Velocity::Zero();
 	load[3] = 0.2 * strength * area;
