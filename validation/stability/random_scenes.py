@@ -254,9 +254,9 @@ def one_normal(i, compliant):
 
 
 def beyond_cone(compliant):
-    """By how much friction is larger than Coulomb's bound, relative to the largest normal force: of compliant joints at each point, else of each pair.
-    Pairs whose reaction may turn are left out."""
-    worst, largest = 0.0, 0.0
+    """By how much friction is larger than Coulomb's bound, relative to the largest normal force, or to 1e-3 of the lightest block's weight where no force is
+    as large: of compliant joints at each point, else of each pair. Pairs whose reaction may turn are left out."""
+    worst, largest = 0.0, 1e-3 * 9.81 * min(b.state.mass for b in O.bodies if b.dynamic)
     for i in O.interactions:
         normal = i.phys.normalForce.norm()
         largest = max(largest, normal)
@@ -265,7 +265,7 @@ def beyond_cone(compliant):
         n = i.geom.normal
         parts = [(n.dot(f), (f - n * n.dot(f)).norm()) for f in i.phys.forces] if compliant else [(normal, i.phys.shearForce.norm())]
         worst = max([worst] + [shear - i.phys.tangensOfFrictionAngle * pressure for pressure, shear in parts])
-    return worst / largest if largest > 0 else 0.0
+    return worst / largest
 
 
 def most_work():

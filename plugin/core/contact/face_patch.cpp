@@ -136,6 +136,26 @@ struct Extent {
 	}
 };
 
+// Of the faces at a vertex, those beside the edge that rises least from a plane with the unit normal -direction through it: the first other
+// vertex of the body that meets the plane, where it turns, is the end of that edge.
+PerPoint<int> facesOfLowestEdge(const ConvexPolyhedron& shape, int vertex, const Vector3& direction)
+{
+	const auto rise = [&](int number) {
+		const ConvexPolyhedron::Edge& edge = shape.edges()[number];
+		return (edge.from == vertex ? -1 : 1) * direction.dot(edge.direction);
+	};
+	double least = std::numeric_limits<double>::infinity();
+	for (const int edge : shape.corners()[vertex].edges)
+		least = std::min(least, rise(edge));
+	PerPoint<int> faces;
+	for (const int edge : shape.corners()[vertex].edges)
+		if (rise(edge) <= least + tolerance::contact::incident) {
+			faces.push_back(shape.edges()[edge].left);
+			faces.push_back(shape.edges()[edge].right);
+		}
+	return faces;
+}
+
 // Returns the face that looks most along a direction; the face `held` leads.
 template <class Faces>
 int mostAlong(const ConvexPolyhedron& shape, const Faces& faces, const Vector3& direction, int held)
@@ -163,7 +183,7 @@ FacePair facePair(const ConvexPolyhedron& shape1, const ConvexPolyhedron& shape2
 	const bool faces = previous.kind == PatchKind::Face1 || previous.kind == PatchKind::Face2;
 	const int held = !faces ? -1 : first ? previous.feature2 : previous.feature1;
 	const int deepest = farthestVertex(pair.incidentShape, pair.against);
-	pair.incidentFace = mostAlong(pair.incidentShape, pair.incidentShape.corners()[deepest].faces, pair.against, held);
+	pair.incidentFace = mostAlong(pair.incidentShape, facesOfLowestEdge(pair.incidentShape, deepest, pair.against), pair.against, held);
 	return pair;
 }
 

@@ -120,6 +120,13 @@ struct FacePair {
 		takeIncident(corner.before == incident ? corner.after : corner.before);
 	}
 
+	// Whether the incident face looks towards the other body: behind a face that does not, a vertex is none of a contact.
+	bool incidentLooksTowards() const
+	{
+		const Vector2 between = polygon.inside() - pose.toFrame(incidentPolygon.inside());
+		return pose.rotate(incidentPolygon.faces()[incident].normal).dot(between) >= 0;
+	}
+
 	// Thinner than this is no contact.
 	bool overlaps() const
 	{
@@ -247,7 +254,7 @@ bool Plane::findPoints(const Shape& shape1, const Pose& pose1, const Shape& shap
 
 	End low = endOfOverlap(pair, -1, before), high = endOfOverlap(pair, 1, before);
 	for (End* end : {&low, &high})
-		if (beyondFace && end->feature.vertexBody() == face.body && !pair.meetsIncident(end->along))
+		if (beyondFace && end->feature.vertexBody() == face.body && !(pair.incidentLooksTowards() && pair.meetsIncident(end->along)))
 			end->gap = std::numeric_limits<double>::infinity();
 	const End& nearer = high.gap < low.gap ? high : low;
 	if (!(nearer.gap <= margin) || std::isinf(nearer.gap))

@@ -209,6 +209,20 @@ TEST_CASE("the smallest gap of polygons is their separation")
 	CHECK(slivers < 2000);
 }
 
+// Oracle: no point of bodies that are apart is behind a face of the other.
+TEST_CASE("polygons that are farther apart than their thickness have no closed point")
+{
+	int found = 0;
+	for (int i = 0; i < 200000; ++i) {
+		const Pair pair = randomPair(30 * (1 + unit()));
+		const Found points = find(pair, std::numeric_limits<double>::infinity());
+		found += points.near;
+		CAPTURE(i, pair.separation().value, pair.length());
+		REQUIRE((!points.near || points.smallestGap > 0));
+	}
+	CHECK(found > 50000);
+}
+
 // The other order gives the same features seen from the other side, and the same frames but for their signs, bit by bit.
 TEST_CASE("the order of two polygons changes no point")
 {

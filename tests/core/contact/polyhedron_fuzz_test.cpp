@@ -331,3 +331,42 @@ TEST_CASE("A box in turned body axes has the patch of a box", "[fuzz]")
 	}
 	CHECK(found > count / 3);
 }
+
+// A polyhedron stands on a vertex S of a plane. An edge from S rises by 1e-3 from it, all others by more: it is the first that the body can
+// fall on, whichever way it turns.
+TEST_CASE("The patch has the vertex that can land next", "[fuzz]")
+{
+	RandomShapes random(11);
+	const ConvexPolyhedron base = ConvexPolyhedron::box({10, 10, 1});
+	constexpr double rise = 1e-3;
+	int tried = 0;
+	for (long i = 0; i < pairs(4000); ++i) {
+		const ConvexPolyhedron shape = random.shape(12);
+		const auto& edge = shape.edges()[i % shape.edges().size()];
+		const double share = std::abs(random.vector().x());
+		const Vector3 down = ((share * shape.faces()[edge.left].normal + (1 - share) * shape.faces()[edge.right].normal).normalized() -
+		                      rise * edge.direction)
+		                         .normalized();
+		const Vector3 standing = shape.vertices()[edge.from];
+		const auto lower = [&](int vertex) { return down.dot(shape.vertices()[vertex] - standing); };
+		const auto others = shape.corners()[edge.from].edges;
+		const bool isLowest = std::all_of(others.begin(), others.end(), [&](int other) {
+			const auto& e = shape.edges()[other];
+			const int end = e.from == edge.from ? e.to : e.from;
+			const double slope = lower(end) / (shape.vertices()[end] - standing).norm();
+			return end == edge.to ? slope < 0 : slope < -2 * rise;
+		});
+		if (!isLowest)
+			continue;
+		++tried;
+		Pose pose;
+		pose.orientation = Quaternion::FromTwoVectors(down, Vector3(0, 0, -1));
+		pose.position = Vector3(0, 0, 1) - pose.orientation * standing;
+		ContactPatch patch;
+		REQUIRE(collide(base, Pose(), shape, pose, 10, {}, patch));
+		CAPTURE(i, tried);
+		CHECK(patch.feature.has(Feature::ofVertex(2, edge.from)));
+		CHECK(patch.feature.has(Feature::ofVertex(2, edge.to)));
+	}
+	CHECK(tried > 1000);
+}

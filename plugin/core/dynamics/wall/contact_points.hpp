@@ -89,8 +89,10 @@ public:
 	// The end of a step of length h, whose solution the states are: gaps and slips follow it. `before`: velocities before the step;
 	// `level`: speed above which a pair moves, m/s.
 	PointsReport advance(const AdmmResults<K>& results, const LaneArray& before, double h, double level);
-	// The bodies move by this, in packs: gaps follow. Returns how deep the deepest point is then, m.
-	double displace(const LaneArray& by);
+	// The bodies move by this, in packs: gaps follow.
+	void displace(const LaneArray& by);
+	// How deep the deepest point is, m; 0 where all are open.
+	double depth() const;
 
 	// The next step needs these of the last: the unit; then the points of a pair.
 	template <class Archive>

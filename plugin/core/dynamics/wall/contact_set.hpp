@@ -42,10 +42,10 @@ public:
 	void setVelocity(const LaneArray& v) { bodies_.setVelocity(v); }
 	void setLinearVelocity(size_t body, const typename K::Vector& v) { bodies_.setLinearVelocity(body, v); }
 	void setShift(double h) { bodies_.setShift(h); }
-	double displace(const LaneArray& by)
+	void displace(const LaneArray& by)
 	{
 		bodies_.addShift(by);
-		return points_.displace(by);
+		points_.displace(by);
 	}
 
 	// The next step needs this from the last, besides the system.

@@ -54,30 +54,31 @@ MASONRY_INLINE void advanceGroups(const AdvancePass<K>& pass, Ended& ended)
 	}
 }
 
-// Gaps as the bodies move. Returns the largest depth.
+// Gaps as the bodies move.
 template <class K>
-MASONRY_INLINE Lanes displaceGroups(Group<K>* groups, int begin, int end, const Lanes* by)
+MASONRY_INLINE void displaceGroups(Group<K>* groups, int begin, int end, const Lanes* by)
 {
-	Lanes deepest = all(0);
 	for (int g = begin; g < end; ++g) {
 		const Bodies<K> v1(by, groups[g].body1), v2(by, groups[g].body2);
-		for (int k = 0; k < groups[g].count; ++k) {
+		for (int k = 0; k < groups[g].count; ++k)
 			groups[g].point[k].gap += normalRate(v1, v2, groups[g].point[k]);
-			deepest = larger(deepest, -groups[g].point[k].gap);
-		}
 	}
-	return deepest;
+}
+template <class K>
+MASONRY_INLINE Lanes smallestGap(const Group<K>* groups, int begin, int end)
+{
+	Lanes gap = all(farAway);
+	for (int g = begin; g < end; ++g)
+		for (int k = 0; k < groups[g].count; ++k)
+			gap = smaller(gap, groups[g].point[k].gap);
+	return gap;
 }
 
 // No template is compiled for several vector widths.
-MASONRY_LANES double displacePass(Group<Plane>* groups, int begin, int end, const Lanes* by)
-{
-	return largest(displaceGroups(groups, begin, end, by));
-}
-MASONRY_LANES double displacePass(Group<Space>* groups, int begin, int end, const Lanes* by)
-{
-	return largest(displaceGroups(groups, begin, end, by));
-}
+MASONRY_LANES void displacePass(Group<Plane>* groups, int begin, int end, const Lanes* by) { displaceGroups(groups, begin, end, by); }
+MASONRY_LANES void displacePass(Group<Space>* groups, int begin, int end, const Lanes* by) { displaceGroups(groups, begin, end, by); }
+MASONRY_LANES void gapPass(const Group<Plane>* groups, int begin, int end, Lanes& gap) { gap = smallestGap(groups, begin, end); }
+MASONRY_LANES void gapPass(const Group<Space>* groups, int begin, int end, Lanes& gap) { gap = smallestGap(groups, begin, end); }
 MASONRY_LANES void advancePass(const AdvancePass<Plane>& pass, Ended& ended) { advanceGroups(pass, ended); }
 MASONRY_LANES void advancePass(const AdvancePass<Space>& pass, Ended& ended) { advanceGroups(pass, ended); }
 
@@ -104,16 +105,28 @@ PointsReport ContactPoints<K>::advance(const AdmmResults<K>& results, const Lane
 }
 
 template <class K>
-double ContactPoints<K>::displace(const LaneArray& by)
+void ContactPoints<K>::displace(const LaneArray& by)
 {
-	std::array<double, Team::maxParts + 1> left {};
-	layout.allParts([&](const Part& part, int number) { left[number] = displacePass(groups_.data(), part.begin, part.end, by.data()); });
-	return *std::max_element(left.begin(), left.end());
+	layout.allParts([&](const Part& part, int) { displacePass(groups_.data(), part.begin, part.end, by.data()); });
+}
+
+template <class K>
+double ContactPoints<K>::depth() const
+{
+	Lanes gaps[Team::maxParts + 1];
+	std::fill(std::begin(gaps), std::end(gaps), all(0));
+	layout.allParts([&](const Part& part, int number) { gapPass(groups_.data(), part.begin, part.end, gaps[number]); });
+	double deepest = 0;
+	for (const Lanes& gap : gaps)
+		deepest = std::max(deepest, largest(-gap));
+	return deepest;
 }
 
 template PointsReport ContactPoints<Plane>::advance(const AdmmResults<Plane>&, const LaneArray&, double, double);
 template PointsReport ContactPoints<Space>::advance(const AdmmResults<Space>&, const LaneArray&, double, double);
-template double ContactPoints<Plane>::displace(const LaneArray&);
-template double ContactPoints<Space>::displace(const LaneArray&);
+template void ContactPoints<Plane>::displace(const LaneArray&);
+template void ContactPoints<Space>::displace(const LaneArray&);
+template double ContactPoints<Plane>::depth() const;
+template double ContactPoints<Space>::depth() const;
 
 } // namespace masonry::wall

@@ -63,8 +63,11 @@ double WallStep<K>::advancePart(RigidSystem<K>& s, double h, bool divisible)
 	team.setThreads(settings.threads);
 	contacts.update(s, step.stands);
 	contacts.setUnit(h);
-	if (!step.stands)
+	if (!step.stands) {
 		contacts.placeFriction(s, h, settings.solver.refactorTime * step.rocking); // when R follows the loads
+		if (const double depth = contacts.points().depth(); depth > tolerance::wall::sunk * contacts.length())
+			report.deepest = std::max(report.deepest, depth);
+	}
 	takeInstants(s, step);
 	const double missed = report.velocityResidual;
 	const int unsettled = report.unsettled;
@@ -257,9 +260,8 @@ CappedStatus WallStep<K>::solveInstant(RigidSystem<K>& s, const std::vector<Spin
 template <class K>
 void WallStep<K>::projectPositions()
 {
-	const LaneArray& by = projection.find(contacts);
-	if (const double deepest = by.empty() ? 0 : contacts.displace(by); deepest > tolerance::wall::sunk * contacts.length())
-		report.deepest = std::max(report.deepest, deepest);
+	if (const LaneArray& by = projection.find(contacts); !by.empty())
+		contacts.displace(by);
 }
 
 // Energies of ties belong to the middle of the step, as velocities do.
