@@ -136,8 +136,8 @@ struct Extent {
 	}
 };
 
-// Of the faces at a vertex, those beside the edge that rises least from a plane with the unit normal -direction through it: the first other
-// vertex of the body that meets the plane, where it turns, is the end of that edge.
+// Of the faces at a vertex, those beside the edge that rises least from the plane through it with the normal -direction: a body that stands
+// on the vertex and turns falls on the end of that edge next, unless it turns nearly about the edge.
 PerPoint<int> facesOfLowestEdge(const ConvexPolyhedron& shape, int vertex, const Vector3& direction)
 {
 	const auto rise = [&](int number) {

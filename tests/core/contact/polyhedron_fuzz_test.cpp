@@ -332,8 +332,7 @@ TEST_CASE("A box in turned body axes has the patch of a box", "[fuzz]")
 	CHECK(found > count / 3);
 }
 
-// A polyhedron stands on a vertex S of a plane. An edge from S rises by 1e-3 from it, all others by more: it is the first that the body can
-// fall on, whichever way it turns.
+// A polyhedron stands on a vertex of a plane. One edge rises from there by 1e-3, all others by at least twice as much.
 TEST_CASE("The patch has the vertex that can land next", "[fuzz]")
 {
 	RandomShapes random(11);
