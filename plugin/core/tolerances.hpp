@@ -253,8 +253,12 @@ constexpr double motion = 5;
 // nearer to each other: a wall that comes to rest is lifted again and again.
 constexpr double penetration = 1.15e-5;
 constexpr double lifted = 5.75e-6;
-// Depth above which a step cannot be trusted. Larger: blocks that sink into each other are not told of; smaller: those that hit hard are.
-constexpr double sunk = 1e-2;
+// Depth above which a step that takes penetrations off cannot be trusted. Larger: blocks that sink into each other are not told of;
+// smaller: those that hit hard are.
+constexpr double sunk = 1e-3;
+// Depth at the start of a step above which it cannot be trusted: the limit of validation/stability. Larger: thin blocks that go far in a
+// step are found in others without a word; smaller: towers that collapse are told of (3e-3 in steps of 1 ms).
+constexpr double foundDeep = 1e-2;
 // Energy that a step may seem to make: share of what moves and what the forces do in it, and of what lifts all blocks by the smallest half
 // size. Where both are zero it may seem to make that of a speed: of blocks that go so far in a step, relative to the smallest half size.
 // Smaller: the errors of sound steps, 1e-3 of what is lost, or rounding, are reported; larger: a wall that flies apart is not.

@@ -136,7 +136,7 @@ struct Extent {
 	}
 };
 
-// Of the faces at a vertex, those beside the edge that rises least from the plane through it with the normal -direction: a body that stands
+// Returns the faces beside the edge at a vertex that rises least from the plane through it with the normal -direction. A body that stands
 // on the vertex and turns falls on the end of that edge next, unless it turns nearly about the edge.
 PerPoint<int> facesOfLowestEdge(const ConvexPolyhedron& shape, int vertex, const Vector3& direction)
 {

@@ -120,21 +120,18 @@ struct FacePair {
 		takeIncident(corner.before == incident ? corner.after : corner.before);
 	}
 
-	// Whether the incident face looks towards the other body: behind a face that does not, a vertex is none of a contact.
-	bool incidentLooksTowards() const
-	{
-		const Vector2 between = polygon.inside() - pose.toFrame(incidentPolygon.inside());
-		return pose.rotate(incidentPolygon.faces()[incident].normal).dot(between) >= 0;
-	}
-
 	// Thinner than this is no contact.
 	bool overlaps() const
 	{
 		return std::min(referenceHigh.along, high.along) - std::max(referenceLow.along, low.along) > limits::sliver * length;
 	}
-	// Whether this place on the reference face lies over the incident face.
+	// Whether this place on the reference face lies over the incident face, and that looks towards the other body: what is behind a face
+	// that does not has not reached it.
 	bool meetsIncident(double along) const
 	{
+		const Vector2 between = polygon.inside() - pose.toFrame(incidentPolygon.inside());
+		if (pose.rotate(incidentPolygon.faces()[incident].normal).dot(between) < 0)
+			return false;
 		const Vector2 half(Vector2(high.along - low.along, high.over - low.over) / 2);
 		const Vector2 fromMiddle(along - (high.along + low.along) / 2, -(high.over + low.over) / 2);
 		return std::abs(fromMiddle.dot(half)) <= half.norm() * (half.norm() + limits::slack * length);
@@ -254,7 +251,7 @@ bool Plane::findPoints(const Shape& shape1, const Pose& pose1, const Shape& shap
 
 	End low = endOfOverlap(pair, -1, before), high = endOfOverlap(pair, 1, before);
 	for (End* end : {&low, &high})
-		if (beyondFace && end->feature.vertexBody() == face.body && !(pair.incidentLooksTowards() && pair.meetsIncident(end->along)))
+		if (beyondFace && end->feature.vertexBody() == face.body && !pair.meetsIncident(end->along))
 			end->gap = std::numeric_limits<double>::infinity();
 	const End& nearer = high.gap < low.gap ? high : low;
 	if (!(nearer.gap <= margin) || std::isinf(nearer.gap))

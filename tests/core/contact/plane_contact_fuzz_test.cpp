@@ -209,7 +209,7 @@ TEST_CASE("the smallest gap of polygons is their separation")
 	CHECK(slivers < 2000);
 }
 
-// Oracle: no point of bodies that are apart is behind a face of the other.
+// Oracle: bodies that are apart have no gap of 0 or less.
 TEST_CASE("polygons that are farther apart than their thickness have no closed point")
 {
 	int found = 0;

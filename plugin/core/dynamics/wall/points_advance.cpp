@@ -54,7 +54,7 @@ MASONRY_INLINE void advanceGroups(const AdvancePass<K>& pass, Ended& ended)
 	}
 }
 
-// Gaps as the bodies move.
+// Gaps follow as the bodies move.
 template <class K>
 MASONRY_INLINE void displaceGroups(Group<K>* groups, int begin, int end, const Lanes* by)
 {
@@ -113,8 +113,7 @@ void ContactPoints<K>::displace(const LaneArray& by)
 template <class K>
 double ContactPoints<K>::depth() const
 {
-	Lanes gaps[Team::maxParts + 1];
-	std::fill(std::begin(gaps), std::end(gaps), all(0));
+	Lanes gaps[Team::maxParts + 1] {};
 	layout.allParts([&](const Part& part, int number) { gapPass(groups_.data(), part.begin, part.end, gaps[number]); });
 	double deepest = 0;
 	for (const Lanes& gap : gaps)

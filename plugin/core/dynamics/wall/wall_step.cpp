@@ -65,8 +65,7 @@ double WallStep<K>::advancePart(RigidSystem<K>& s, double h, bool divisible)
 	contacts.setUnit(h);
 	if (!step.stands) {
 		contacts.placeFriction(s, h, settings.solver.refactorTime * step.rocking); // when R follows the loads
-		if (const double depth = contacts.points().depth(); depth > tolerance::wall::sunk * contacts.length())
-			report.deepest = std::max(report.deepest, depth);
+		reportDepth(tolerance::wall::foundDeep);
 	}
 	takeInstants(s, step);
 	const double missed = report.velocityResidual;
@@ -260,8 +259,18 @@ CappedStatus WallStep<K>::solveInstant(RigidSystem<K>& s, const std::vector<Spin
 template <class K>
 void WallStep<K>::projectPositions()
 {
-	if (const LaneArray& by = projection.find(contacts); !by.empty())
+	if (const LaneArray& by = projection.find(contacts); !by.empty()) {
 		contacts.displace(by);
+		reportDepth(tolerance::wall::sunk);
+	}
+}
+
+// A depth of blocks in each other is told if it is more than this share of the smallest half size.
+template <class K>
+void WallStep<K>::reportDepth(double share)
+{
+	if (const double depth = contacts.points().depth(); depth > share * contacts.length())
+		report.deepest = std::max(report.deepest, depth);
 }
 
 // Energies of ties belong to the middle of the step, as velocities do.

@@ -79,6 +79,7 @@ private:
 	CappedStatus solve(RigidSystem<K>& system, const AdmmProblem<K>& problem, const AdmmSettings& solverSettings);
 	CappedStatus solveInstant(RigidSystem<K>& system, const std::vector<SpinRow<K>>& rows, const StepContext& instant, double taken);
 	void projectPositions();
+	void reportDepth(double share);
 	void moveBodies(RigidSystem<K>& system, double h);
 
 	bool started {false};

@@ -54,7 +54,7 @@ TEMPLATE_TEST_CASE("a step tells how deep it has found a block", "", Plane, Spac
 	SceneOf<TestType> scene;
 	auto& s = scene.system;
 	addBlock(s, sizeOf(s, 0.5, 0.25), placeOf(s, 0, 0.25));
-	const double deep = 2 * tolerance::wall::sunk * 0.25;
+	const double deep = 2 * tolerance::wall::foundDeep * 0.25;
 	s.bodies[1].pose.position[TestType::dimension - 1] -= deep;
 	scene.advance(1e-3);
 	CHECK(scene.step.report.deepest == Approx(deep));
