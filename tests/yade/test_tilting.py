@@ -99,6 +99,7 @@ def test_a_block_that_slides_and_leans_on_another():
     second = dem.block((0.6, 0.5, 0.4), stone, center=(0.6005, 0, 0.2))
     result = found()
     assert abs(result.multiplier / 0.45 - 1) < 0.0175 + CLOSE and result.blocks == [first, second]
+    assert marks(result, "opens") == [] and marks(result, "slides") == [(base, first), (base, second)], result.joints  # also where 0.5 mm were closed before
     assert any(t.verdict == "rest" and t.moved > 5e-4 for t in result.trials), result.trials
     remark, = result.remarks
     assert "0.5 mm" in remark and "come to rest against others" in remark and "0.8 mm (share)" in remark and remark in str(result)

@@ -278,11 +278,20 @@ double AdmmSolver<K>::usualIterations(const AdmmSettings& settings) const
 	return settings.iterations * std::max(1., double(settings.small) * packs<K> / std::max<size_t>(1, matrix.freePacks().size()));
 }
 
-// Whether the solve has to go on from here, and may.
+// Whether there are at most so many free blocks.
 template <class K>
-bool AdmmSolver<K>::goesOn(const StepContext& step, const AdmmSettings& settings, const SolverStatus& status) const
+bool AdmmSolver<K>::hasAtMost(int blocks) const
 {
-	const double iterations = usualIterations(settings), tolerated = settings.tolerance * step.fall;
+	return matrix.freePacks().size() <= size_t(blocks * packs<K>);
+}
+
+// Whether the solve has to go on from here, and may. `falls`: its residual still does.
+template <class K>
+bool AdmmSolver<K>::goesOn(const StepContext& step, const AdmmSettings& settings, const SolverStatus& status, bool falls) const
+{
+	const bool areFew = hasAtMost(settings.few) && !step.stands && falls;
+	const double iterations = usualIterations(settings),
+	             tolerated = (areFew ? std::min(settings.fewTolerance, settings.tolerance) : settings.tolerance) * step.fall;
 	if (step.instant) {
 		const bool isEarly = status.iterations < settings.ofInstant * (iterations / settings.iterations);
 		const double enough = std::max(tolerated, step.speed * (isEarly ? settings.instantTolerance : settings.instantEnough));
@@ -291,7 +300,8 @@ bool AdmmSolver<K>::goesOn(const StepContext& step, const AdmmSettings& settings
 	const bool isLagging = !atRest && status.iterations < settings.least;
 	if (!(status.residual > (isLagging ? settings.early * tolerated : tolerated)))
 		return false;
-	return status.iterations < (cold || settings.strictForces ? settings.first : int(std::min(iterations + saved, 10 * iterations)));
+	return status.iterations <
+	       (cold || areFew || settings.strictForces ? settings.first : int(std::min(iterations + saved, 10 * iterations)));
 }
 
 template <class K>
@@ -305,8 +315,8 @@ SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& se
 		makeMatrix(problem, settings, results);
 		++status.factorisations;
 	};
-	const bool areFew = matrix.freePacks().size() < size_t(settings.small * packs<K>);
-	const bool wasAtRest = std::exchange(atRest, step.stands && !step.instant && !cold && !settings.strictForces && !areFew);
+	const bool wasAtRest =
+	    std::exchange(atRest, step.stands && !step.instant && !cold && !settings.strictForces && !hasAtMost(settings.small - 1));
 	const bool isAfterInstant = std::exchange(ofInstant, ofInstant && step.instant) && !step.instant;
 	if (isOutdated(problem, settings, results) || isAfterInstant || atRest != wasAtRest)
 		refactor();
@@ -315,7 +325,9 @@ SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& se
 	constexpr double diverging = 10;
 	constexpr int untilLoaded = 100;          // iterations of a cold start, after which R follows the loads that they have found
 	constexpr int looks[] {20, 50, 300, 600}; // the same of an instant (docs/tuning.md, impacts)
-	double least = INFINITY;
+	constexpr int patience = 200;             // iterations in which the residual of few blocks has to fall by a tenth
+	double least = INFINITY, lowest = INFINITY, before = INFINITY;
+	bool falls = true;
 	do {
 		status.residual = iterate(problem, settings, status.iterations, results);
 		++status.iterations;
@@ -333,7 +345,10 @@ SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& se
 			least = status.residual;
 		}
 		least = std::min(least, status.residual);
-	} while (goesOn(step, settings, status));
+		lowest = std::min(lowest, status.residual);
+		if (status.iterations % patience == 0)
+			falls = lowest < 0.9 * std::exchange(before, lowest);
+	} while (goesOn(step, settings, status, falls));
 	if (!step.instant) {
 		const double iterations = usualIterations(settings);
 		saved = cold ? 0 : std::clamp(saved + iterations - status.iterations, 0., settings.reserve * iterations);

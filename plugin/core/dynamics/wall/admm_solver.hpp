@@ -61,8 +61,11 @@ struct AdmmSettings {
 	double tolerance {1e-3};   // largest |w - z| relative to the speed that gravity gives in a step. Larger: joints drift and sink
 	bool strictForces {false}; // the same holds for errors of impulses, as velocities; then a step takes up to `first` iterations
 	int iterations {20};       // (a) at most in a step, beside the reserve. Fewer: excursions are too small
-	int small {100};    // (f) blocks below which a step takes more of them, in inverse proportion. Smaller: walls of some tens of blocks in
-	                    // space go up to 14 % too little; larger: more CPU time
+	int small {100}; // (f) blocks below which a step takes more of them, in inverse proportion. Smaller: walls of some tens of blocks in
+	                 // space go up to 14 % too little; larger: more CPU time
+	int few {6};     // (f) blocks up to which a step in which something moves goes on to fewTolerance, up to `first` iterations, while its
+	                 // residual falls. Fewer: what slides without friction gains energy; more: more CPU time
+	double fewTolerance {1e-8}; // (f) as `tolerance`, which may be smaller. Larger: blocks that fly past others feel them
 	int least {10};     // (c) iterations of a step, unless its residual is below `early`. Fewer: p lags behind what turns, and energy rises
 	double early {0.1}; // (c) of the tolerance. Smaller: more iterations at rest; larger: as with fewer `least` iterations
 	int reserve {50};   // (d) times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
@@ -120,7 +123,8 @@ private:
 	bool isMortarOutdated(const Problem& problem, const AdmmSettings& settings, Results& results) const;
 	bool isMortarFar(const Problem& problem, const AdmmSettings& settings, int iterations, Results& results);
 	double usualIterations(const AdmmSettings& settings) const;
-	bool goesOn(const StepContext& step, const AdmmSettings& settings, const SolverStatus& status) const;
+	bool hasAtMost(int blocks) const;
+	bool goesOn(const StepContext& step, const AdmmSettings& settings, const SolverStatus& status, bool falls) const;
 	void makeMatrix(const Problem& problem, const AdmmSettings& settings, Results& results);
 	void start(const Problem& problem, const AdmmSettings& settings, Results& results);
 	double iterate(const Problem& problem, const AdmmSettings& settings, int number, Results& results);

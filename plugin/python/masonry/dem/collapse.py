@@ -26,8 +26,8 @@ class Collapse:
     multiplier: float
     bracket: tuple
     trials: list
-    joints: np.ndarray  # id1, id2, opening (m), slip (m, of body 2 on body 1), opens, slides; at the end of the trial that is drawn
-    blocks: list  # ids that have moved
+    joints: np.ndarray  # id1, id2, opening (m), slip (m, of body 2 on body 1), opens, slides; from the last rest to the end of the trial that is drawn
+    blocks: list  # ids that have moved since the last rest
     doubts: list  # why the result cannot be trusted; empty: none
     remarks: list  # what blocks did below collapse, or where it was not reached, in words
     _mechanism: object = field(repr=False)

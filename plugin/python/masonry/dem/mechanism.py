@@ -30,7 +30,7 @@ def _silhouette(corners, across):
 
 
 class Mechanism:
-    """Where the blocks were at the start, where they are now, and the joints that were closed at the start."""
+    """Where the blocks were at rest, where they are now, and the joints that were closed at rest."""
 
     def __init__(self, blocks, start, joints, axis):
         self._ids, self._axis, self._joints = [b.id for b in blocks], axis, joints

@@ -189,7 +189,7 @@ class TiltTable:
                 if count := self._ties.broken():
                     broken.append((multiplier, count))
             elif rest:
-                mechanism = self._mechanism()
+                mechanism = self._mechanism(rest)
                 self._go_back(integrator, rest)
             bar.set_postfix_str(f"{multiplier:.5g} {verdict}")
             bar.update()
@@ -229,7 +229,7 @@ class TiltTable:
         positive_given("rate", rate)
         if not 0 <= number_given("start", start) < _MOST:
             raise ValueError(f"start = {start}: must be from 0 to below {_MOST}")
-        multiplier, rested = start, None
+        multiplier, rested, rest = start, None, None
         with self._trials("stair", progress) as bar:
             integrator = self._begin(start)
             while self._moved() <= self.share * self._size:
@@ -239,10 +239,10 @@ class TiltTable:
                 for _ in range(_LOOK):
                     O.step()
                 if self._speed() <= _REST * self.gravity * self._unit and (rested is None or not self._is_jammed(last)):
-                    rested, last = multiplier, self._places()
+                    rested, last, rest = multiplier, self._places(), self._keep(integrator)
                 bar.set_postfix_str(f"{multiplier:.5g}")
                 bar.update()
-            trial, mechanism = Trial(multiplier, "collapse", self._moved(), O.time, integrator.failures), self._mechanism()
+            trial, mechanism = Trial(multiplier, "collapse", self._moved(), O.time, integrator.failures), self._mechanism(rest)
         if rested is None:
             raise ValueError(f"start = {start}: the blocks do not stand under it: must be below the multiplier of collapse")
         result = self._collapse(rested, (rested, multiplier), [trial], mechanism)
@@ -302,12 +302,14 @@ class TiltTable:
         return Trial(multiplier, verdict, self._moved(), O.time, integrator.failures - before)
 
     def _keep(self, integrator):
-        return integrator.remembered, [(b.state.pos, b.state.ori, Vector3(b.state.vel), Vector3(b.state.angVel)) for b in self._free]
+        """A rest, to go back to and to tell the mechanism from: what the integrator remembers, the blocks' states, and the joints."""
+        return integrator.remembered, [(b.state.pos, b.state.ori, Vector3(b.state.vel), Vector3(b.state.angVel)) for b in self._blocks], self._closed()
 
-    def _go_back(self, integrator, kept):
-        integrator.remembered, states = kept
-        for body, (pos, ori, vel, spin) in zip(self._free, states):
-            body.state.pos, body.state.ori, body.state.vel, body.state.angVel = pos, ori, vel, spin
+    def _go_back(self, integrator, rest):
+        integrator.remembered, states, _ = rest
+        for body, (pos, ori, vel, spin) in zip(self._blocks, states):
+            if body.dynamic:
+                body.state.pos, body.state.ori, body.state.vel, body.state.angVel = pos, ori, vel, spin
 
     @contextlib.contextmanager
     def _trials(self, unit, shown):
@@ -376,16 +378,22 @@ class TiltTable:
 
     # --- what is reported ---
 
+    def _closed(self):
+        """(id1, id2, normal from 1 to 2, points) of the joints that are closed now."""
+        return [(i.id1, i.id2, np.array(i.geom.normal), np.array([tuple(p) for p in i.geom.points])) for i in O.interactions]
+
     def _find_joints(self):
-        """(id1, id2, normal from 1 to 2, points) of the joints that are closed at the start."""
+        """The joints that are closed at the start."""
         self._begin(0.0)
         O.step()
-        found = [(i.id1, i.id2, np.array(i.geom.normal), np.array([tuple(p) for p in i.geom.points])) for i in O.interactions]
+        found = self._closed()
         self._put_back()
         return found
 
-    def _mechanism(self):
-        return Mechanism(self._blocks, self._start, self._joints, 1 if abs(self._towards[1]) > abs(self._towards[0]) else 0)
+    def _mechanism(self, rest=None):
+        """What moves from a rest, or from the start: blocks that have closed a gap below collapse need not take part in it."""
+        start, joints = ([state[:2] for state in rest[1]], rest[2]) if rest else (self._start, self._joints)
+        return Mechanism(self._blocks, start, joints, 1 if abs(self._towards[1]) > abs(self._towards[0]) else 0)
 
     def _collapse(self, multiplier, bracket, trials, mechanism, cracked=(), broken=()):
         failures = sum(t.failures for t in trials if t.multiplier in bracket)
