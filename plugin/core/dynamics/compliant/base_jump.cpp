@@ -2,6 +2,7 @@
 #include "dynamics/compliant/instant.hpp"
 #include "dynamics/compliant/pivots.hpp"
 #include "dynamics/compliant/settling.hpp"
+#include "impact/caught_slip.hpp"
 #include "tolerances.hpp"
 
 namespace masonry {
@@ -16,12 +17,21 @@ std::vector<HeldPoint> respondToJump(JointSystem& s, const BaseJump& jump, Impul
 		return !contact.points[i].muted && (contact.patch.points[i].gap <= 0 || contact.springs[i] > 0);
 	});
 	auto rows = impulsePoints(s.contacts, touching);
+	const auto sideOf = [](const ImpulsePoint<Space>& row, int b) { return row.body1 == b ? 1 : row.body2 == b ? -1 : 0; };
+	std::vector<Vector3> before;
+	for (const ImpulsePoint<Space>& row : rows) {
+		before.push_back(relativeVelocity(s.bodies, row));
+		for (int b : jump.moved)
+			before.back() += sideOf(row, b) * jump.velocity;
+	}
 	CoupleRows<Space> none;
 	const ImpulseReport report = solveSparsely(s.bodies, rows, none);
 	s.note(report.residual, report.solved);
-	for (const ImpulsePoint<Space>& row : rows)
-		for (int b : jump.moved) // impulse times the mean of the base's velocities before and after
-			response.work += (row.body1 == b ? 1 : row.body2 == b ? -1 : 0) * row.impulse.dot(s.bodies[b].linear() - 0.5 * jump.velocity);
+	for (size_t k = 0; k < rows.size(); ++k)
+		for (int b : jump.moved) // impulse times the mean of the base's velocities before and after, but where it catches what slides
+			if (const int side = sideOf(rows[k], b))
+				response.work += workOfCatch(rows[k], before[k], relativeVelocity(s.bodies, rows[k])) +
+				                 side * rows[k].impulse.dot(s.bodies[b].linear() - 0.5 * jump.velocity);
 
 	std::vector<HeldPoint> held;
 	for (const HeldPoint& p : touching) {

@@ -11,6 +11,7 @@ struct Step {
 	double sticks;      // m, gap up to which a point without an impulse starts as one that sticks
 	bool strict;        // errors of impulses count as those of velocities
 	bool compares;      // R with the loads
+	bool started;       // the solve has taken iterations
 };
 
 // R and 1/R of a point; zero: the point is not in A and carries nothing.
@@ -119,6 +120,7 @@ MASONRY_INLINE Mask giveGroups(const Pass<K>& pass)
 	return gives;
 }
 
+// Points that come into A within a solve start from the velocities that they have; those that press stay.
 template <class K, bool bonded>
 MASONRY_INLINE void setPenalties(const Pass<K>& pass)
 {
@@ -129,8 +131,12 @@ MASONRY_INLINE void setPenalties(const Pass<K>& pass)
 		for (int k = 0; k < lanePoints<K>; ++k) {
 			const PointLanes<K>& p = groups[g].point[k];
 			const Lanes approach = 2. * smaller(normalRate(v1, v2, p), none);
-			const Mask in = (p.massN > 0) & (p.gap + step.h * approach < step.reach) & (all(groups[g].count - k) > 0);
+			const Mask presses = step.started ? states[g][k].pn > 0 : Mask {};
+			const Mask in = (p.massN > 0) & ((p.gap + step.h * approach < step.reach) | presses) & (all(groups[g].count - k) > 0);
 			const Lanes resistance = in ? resistanceOf<K, bonded>(p, states[g][k], step, pullOf(strength, g, k)) : one;
+			const Mask isNew = step.started ? in & ~(penalties[g][k].stiffness > 0) : Mask {};
+			states[g][k].zn = isNew ? larger(results[g][k].un + results[g][k].bn, none) : states[g][k].zn;
+			states[g][k].zt = select(isNew, results[g][k].ut + results[g][k].bt, states[g][k].zt);
 			penalties[g][k] = {in ? resistance : none, in ? one / resistance : none};
 			results[g][k].inReach = in;
 		}
@@ -203,7 +209,7 @@ MASONRY_INLINE void startGroups(const Pass<K>& pass)
 			const PointLanes<K>& at = groups[g].point[k];
 			PointState<K>& p = states[g][k];
 			PointResult<K>& row = results[g][k];
-			const Mask in = penalties[g][k].stiffness > 0;
+			const Mask in = penalties[g][k].stiffness > 0, exists = at.massN > 0;
 			row.inReach = in;
 			p.pn = in ? p.pn : none;
 			p.pt = select(in, p.pt, typename PointLanes<K>::Tangent {});
@@ -211,7 +217,8 @@ MASONRY_INLINE void startGroups(const Pass<K>& pass)
 				p.pn = larger(p.pn, -strength[g].pull[k]);
 			p.zero = larger(p.zero, smaller(at.gap, none));
 			const Lanes deep = smaller(at.gap - p.zero + step.left, none);
-			row.bn = in ? step.perH * (at.gap > 0 ? at.gap : step.pullBack * deep) : none;
+			// A that is made anew within the solve may have more points than now: all need their bias.
+			row.bn = exists ? step.perH * (at.gap > 0 ? at.gap : step.pullBack * deep) : none;
 			if constexpr (bonded)
 				row.bn = (strength[g].pull[k] > 0) & (at.gap > 0) ? step.pullBack * row.bn : row.bn;
 			row.bt = select(in, all(step.pullBack * step.perH) * p.slip, typename PointLanes<K>::Tangent {});

@@ -312,7 +312,7 @@ SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& se
 	beginResults(problem, results);
 	penalties.resize(problem.contacts.points().groups().size());
 	const auto refactor = [&] {
-		makeMatrix(problem, settings, results);
+		makeMatrix(problem, settings, status.iterations > 0, results);
 		++status.factorisations;
 	};
 	const bool wasAtRest =
@@ -360,10 +360,11 @@ SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& se
 }
 
 template <class K>
-void AdmmSolver<K>::makeMatrix(const Problem& problem, const AdmmSettings& settings, Results& results)
+void AdmmSolver<K>::makeMatrix(const Problem& problem, const AdmmSettings& settings, bool started, Results& results)
 {
 	const ContactSet<K>& c = problem.contacts;
-	const Step step = stepOf(problem.step, settings, atRest);
+	Step step = stepOf(problem.step, settings, atRest);
+	step.started = started;
 	c.layout().allParts([&](const Part& part, int) {
 		Pass<K> pass = passOf(problem, part, step, results);
 		pass.velocity = c.bodies().velocity().data(); // before the step

@@ -65,7 +65,7 @@ struct AdmmSettings {
 	                 // space go up to 14 % too little; larger: more CPU time
 	int few {6};     // (f) blocks up to which a step in which something moves goes on to fewTolerance, up to `first` iterations, while its
 	                 // residual falls. Fewer: what slides without friction gains energy; more: more CPU time
-	double fewTolerance {1e-8}; // (f) as `tolerance`, which may be smaller. Larger: blocks that fly past others feel them
+	double fewTolerance {1e-9}; // (f) as `tolerance`, which may be smaller. Larger: blocks that fly past others feel them
 	int least {10};     // (c) iterations of a step, unless its residual is below `early`. Fewer: p lags behind what turns, and energy rises
 	double early {0.1}; // (c) of the tolerance. Smaller: more iterations at rest; larger: as with fewer `least` iterations
 	int reserve {50};   // (d) times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
@@ -125,7 +125,7 @@ private:
 	double usualIterations(const AdmmSettings& settings) const;
 	bool hasAtMost(int blocks) const;
 	bool goesOn(const StepContext& step, const AdmmSettings& settings, const SolverStatus& status, bool falls) const;
-	void makeMatrix(const Problem& problem, const AdmmSettings& settings, Results& results);
+	void makeMatrix(const Problem& problem, const AdmmSettings& settings, bool started, Results& results);
 	void start(const Problem& problem, const AdmmSettings& settings, Results& results);
 	double iterate(const Problem& problem, const AdmmSettings& settings, int number, Results& results);
 	void prepareSpins(const Problem& problem);

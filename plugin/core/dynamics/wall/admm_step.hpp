@@ -34,6 +34,7 @@ inline Step stepOf(const StepContext& c, const AdmmSettings& a, bool atRest)
 	        a.tolerance * c.fall / a.soundShare,
 	        c.instant ? tolerance::wall::touching * c.length : -farAway,
 	        a.strictForces,
+	        false,
 	        false};
 }
 

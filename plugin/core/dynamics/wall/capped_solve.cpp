@@ -36,6 +36,7 @@ CappedStatus CappedSolve<K>::solve(const RigidSystem<K>& s, const AdmmProblem<K>
 		static_cast<SolverStatus&>(status) = solver.solve(
 		    {problem.contacts, problem.step, problem.load, problem.guess, held, problem.ties, problem.mortar, problem.strength}, settings,
 		    results);
+		fewBlocks.refine(problem, settings, results, status);
 		status.iterations += iterations;
 		status.factorisations += factorisations;
 		SpinRow<K>* worst = takeWork(s, problem, status.residual, results);

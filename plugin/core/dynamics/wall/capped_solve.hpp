@@ -15,6 +15,7 @@
 // last one that has made none holds.
 #include "dynamics/wall/admm_solver.hpp"
 #include "dynamics/wall/energy_ledger.hpp"
+#include "dynamics/wall/few_blocks.hpp"
 #include <cmath>
 
 namespace masonry::wall {
@@ -56,6 +57,7 @@ private:
 	};
 	std::vector<SpinRow<K>> rows, sound; // now; the last with which no joint made energy
 	std::vector<Range> ranges;           // by row
+	FewBlocks<K> fewBlocks;
 };
 
 } // namespace masonry::wall

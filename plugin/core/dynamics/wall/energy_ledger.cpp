@@ -60,6 +60,25 @@ double EnergyLedger<K>::work(const RigidSystem<K>& s, const ContactSet<K>& c, co
 }
 
 template <class K>
+double EnergyLedger<K>::workOfCatches(const ContactSet<K>& c, const AdmmResults<K>& results) const
+{
+	double sum = 0;
+	for (const auto& [g, i] : c.layout().onBase()) {
+		const Group<K>& group = c.points().groups()[g];
+		for (int k = 0; k < group.count; ++k) {
+			double made = 0;
+			for (int r = 1; r < K::rows; ++r)
+				for (const LaneArray* v : {&before, &results.velocity})
+					made += component(results.points[g][k].actedT, r - 1, i) / 2 *
+					        (rateOf(group.point[k], r, i, 2, &(*v)[packs<K> * group.body2[i]]) -
+					         rateOf(group.point[k], r, i, 1, &(*v)[packs<K> * group.body1[i]]));
+			sum += std::max(0., made);
+		}
+	}
+	return sum;
+}
+
+template <class K>
 void EnergyLedger<K>::takeContacts(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmResults<K>& results, double loss,
                                    double spent, double ofBase)
 {

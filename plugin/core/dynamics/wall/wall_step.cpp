@@ -245,7 +245,8 @@ CappedStatus WallStep<K>::solveInstant(RigidSystem<K>& s, const std::vector<Spin
 	    mortar.finishInstant(s, results.states, results.mortar, std::max(status.residual, settings.solver.tolerance * instant.speed));
 	contacts.points().addJammed(results.states, report.jammed);
 	report.converged &= status.residual <= missed * std::max(10 * instant.fall, instant.speed);
-	ledger.takeContacts(s, contacts, results, cracks.friction, cracks.crack, cracks.base);
+	const double caught = rows.empty() ? ledger.workOfCatches(contacts, results) : 0;
+	ledger.takeContacts(s, contacts, results, cracks.friction, cracks.crack, cracks.base + caught);
 	contacts.setVelocity(results.velocity);
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		if (!s.bodies[b].prescribed)

