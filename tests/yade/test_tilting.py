@@ -100,9 +100,10 @@ def test_a_block_that_slides_and_leans_on_another():
     result = found()
     assert abs(result.multiplier / 0.45 - 1) < 0.0175 + CLOSE and result.blocks == [first, second]
     assert marks(result, "opens") == [] and marks(result, "slides") == [(base, first), (base, second)], result.joints  # also where 0.5 mm were closed before
-    assert any(t.verdict == "rest" and t.moved > 5e-4 for t in result.trials), result.trials
+    moved = max(t.moved for t in result.trials if t.verdict == "rest")  # the gap, and a slip until friction between the two holds them
+    assert 4.99e-4 < moved < 8e-4, result.trials
     remark, = result.remarks
-    assert "0.5 mm" in remark and "come to rest against others" in remark and "0.8 mm (share)" in remark and remark in str(result)
+    assert f"{1e3 * moved:.2g} mm" in remark and "come to rest against others" in remark and "0.8 mm (share)" in remark and remark in str(result)
 
 
 def test_a_rest_of_blocks_that_have_moved():

@@ -71,16 +71,21 @@ def collapse(mode, direction="x", **options):
     if mode in BULLET:
         return peers.collapse(direction)
     if mode in COMPLIANT:
-        return compliant_collapse(direction)
+        return compliant_collapse(direction, **options)
     result = dem.TiltTable(direction=direction, method=mode[0], model=mode[1], **options).bisect(tolerance=2e-4, progress=False)
     assert not result.doubts, result.doubts
     return result.multiplier
 
 
-def compliant_collapse(direction, ramp=0.5, hold=1.5, share=5e-3, tolerance=1e-3):
-    """The same with compliant joints, by bisection: the pull grows smoothly for `ramp` s, and a block that has then moved by `share` of the least extent of any
-    within `hold` s falls. dem.TiltTable knows rigid blocks alone."""
-    pull = 9.81 * Vector3(1 if direction == "x" else -1, 0, 0)
+def compliant_collapse(direction, load="force", ramp=0.5, hold=1.5, share=5e-3, tolerance=1e-3):
+    """The same with compliant joints, by bisection: the pull grows smoothly for `ramp` s, or gravity turns, and a block that has then moved by `share` of the
+    least extent of any within `hold` s falls. dem.TiltTable knows rigid blocks alone."""
+    pull = Vector3(1 if direction == "x" else -1, 0, 0)
+
+    def gravity(multiplier):
+        along = multiplier * pull - Vector3.UnitZ
+        return 9.81 * (along / along.norm() if load == "turned" else along)
+
     free = [body.id for body in O.bodies if body.dynamic]
     limit = share * min(np.ptp(peers.local_vertices(O.bodies[id]), axis=0).min() for id in free)
     O.saveTmp("before the pull")
@@ -90,7 +95,7 @@ def compliant_collapse(direction, ramp=0.5, hold=1.5, share=5e-3, tolerance=1e-3
         begin, newton = [O.bodies[id].state.pos for id in free], start(COMPLIANT[0])
         steps = round(ramp / O.dt / 50)
         for k in range(1, steps + 1):
-            newton.gravity = Vector3(0, 0, -9.81) + (1 - math.cos(math.pi * k / steps)) / 2 * multiplier * pull
+            newton.gravity = gravity((1 - math.cos(math.pi * k / steps)) / 2 * multiplier)
             O.run(50, True)
         for _ in range(10):
             O.run(round(hold / O.dt / 10), True)
@@ -99,6 +104,8 @@ def compliant_collapse(direction, ramp=0.5, hold=1.5, share=5e-3, tolerance=1e-3
         return False
 
     low, high = 0.0, 1.0
+    while not falls(high):
+        low, high = high, 2 * high
     while high - low > tolerance:
         middle = (low + high) / 2
         low, high = (low, middle) if falls(middle) else (middle, high)

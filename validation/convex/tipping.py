@@ -48,8 +48,8 @@ def a2_tetrahedron():
         return found
 
     right = [math.degrees(math.atan(threshold(base, math.sqrt(2) / 4, t))) for t in (math.pi, 0)]
-    return rows("a2", measure, [("tetrahedron on a slope, mu 3: tips over an edge, deg", right[0], (1e-3, 1e-3)),
-                                ("over a corner", right[1], (1e-3, 1e-3))], IN_SPACE)
+    return rows("a2", measure, [("tetrahedron on a slope, mu 3: tips over an edge, deg", right[0], (1e-3, 1e-3, 1e-3)),
+                                ("over a corner", right[1], (1e-3, 1e-3, 1e-3))], IN_SPACE)
 
 
 def column(friction):

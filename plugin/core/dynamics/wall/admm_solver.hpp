@@ -63,8 +63,8 @@ struct AdmmSettings {
 	int iterations {20};       // (a) at most in a step, beside the reserve. Fewer: excursions are too small
 	int small {100}; // (f) blocks below which a step takes more of them, in inverse proportion. Smaller: walls of some tens of blocks in
 	                 // space go up to 14 % too little; larger: more CPU time
-	int few {6};     // (f) blocks up to which a step in which something moves goes on to fewTolerance, up to `first` iterations, while its
-	                 // residual falls. Fewer: what slides without friction gains energy; more: more CPU time
+	int few {6};     // (f) blocks up to which a step in which something moves goes on to fewTolerance, up to `first` iterations while its
+	                 // residual falls, then by FewBlocks. Fewer: what slides without friction gains energy; more: more CPU time
 	double fewTolerance {1e-9}; // (f) as `tolerance`, which may be smaller. Larger: blocks that fly past others feel them
 	int least {10};     // (c) iterations of a step, unless its residual is below `early`. Fewer: p lags behind what turns, and energy rises
 	double early {0.1}; // (c) of the tolerance. Smaller: more iterations at rest; larger: as with fewer `least` iterations

@@ -33,11 +33,11 @@ void FewBlocks<K>::refine(const AdmmProblem<K>& problem, const AdmmSettings& set
 {
 	const StepContext& step = problem.step;
 	const BodyLanes<K>& bodies = problem.contacts.bodies();
-	const double tolerance = settings.fewTolerance * step.fall;
+	const double tolerance = settings.fewTolerance * step.speed;
 	int blocks = 0;
 	for (size_t b = 0; b < bodies.size(); ++b)
 		blocks += bodies.isFree(b);
-	if (blocks > settings.few || step.stands || step.instant || !(status.residual > tolerance))
+	if (blocks > settings.few || step.stands || !(status.residual > (step.instant ? settings.instantTolerance * step.speed : tolerance)))
 		return;
 	if (!problem.ties.empty() || !problem.mortar.empty() || firstOf(problem.strength))
 		return;

@@ -1,8 +1,7 @@
 #pragma once
-// The laws of a step of few blocks, to round-off. ADMM ends at a tolerance: its impulses then press where nothing touches, and work on
-// blocks that slide without friction. Where blocks are few the solver of the localised steps (laws/contact_problem.hpp) goes on from them.
-// Redundant points and friction leave several solutions; it finds the one that is nearest to the impulses given, so that the choice stays
-// with ADMM.
+// The laws of few blocks where ADMM stops short of them, because sliding points oscillate or blocks slide without friction. Its impulses
+// then press where nothing touches, or make energy. The solver of the localised steps (laws/contact_problem.hpp) goes on from them.
+// Redundant points and friction leave several solutions; it finds one near the impulses given, so that the choice stays with ADMM.
 #include "dynamics/wall/admm_solver.hpp"
 #include "laws/contact_problem.hpp"
 
@@ -11,7 +10,7 @@ namespace masonry::wall {
 template <class K>
 class FewBlocks {
 public:
-	// Goes on from the results of ADMM and sets the residual, if the blocks are few and move, and have neither ties nor mortar. Results
+	// Goes on from results whose residual is too large for few blocks that move, without ties and mortar, and sets the residual. Results
 	// that do not lead to a solution stay.
 	void refine(const AdmmProblem<K>& problem, const AdmmSettings& settings, AdmmResults<K>& results, SolverStatus& status);
 

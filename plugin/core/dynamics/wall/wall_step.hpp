@@ -4,7 +4,7 @@
 //
 //     frames and gaps at the start of the step (ContactSet); while nothing moves, every few steps
 //     impacts and jumps of the base at the instant between two steps (RockingEvents, BasePulse, CappedSolve)
-//     V by the contact laws, all at once (AdmmSolver); a step in which a structure lands goes on in parts (landing_parts.hpp)
+//     V by the contact laws, all at once (AdmmSolver, FewBlocks); a step in which a structure lands goes on in parts (landing_parts.hpp)
 //     q += h V, and penetrations that are left are taken off by positions alone (PositionProjection)
 //     energies (EnergyLedger)
 //
