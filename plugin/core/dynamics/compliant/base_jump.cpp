@@ -2,7 +2,7 @@
 #include "dynamics/compliant/instant.hpp"
 #include "dynamics/compliant/pivots.hpp"
 #include "dynamics/compliant/settling.hpp"
-#include "impact/caught_slip.hpp"
+#include "impact/jump_work.hpp"
 #include "tolerances.hpp"
 
 namespace masonry {
@@ -17,21 +17,15 @@ std::vector<HeldPoint> respondToJump(JointSystem& s, const BaseJump& jump, Impul
 		return !contact.points[i].muted && (contact.patch.points[i].gap <= 0 || contact.springs[i] > 0);
 	});
 	auto rows = impulsePoints(s.contacts, touching);
-	const auto sideOf = [](const ImpulsePoint<Space>& row, int b) { return row.body1 == b ? 1 : row.body2 == b ? -1 : 0; };
-	std::vector<Vector3> before;
-	for (const ImpulsePoint<Space>& row : rows) {
-		before.push_back(relativeVelocity(s.bodies, row));
-		for (int b : jump.moved)
-			before.back() += sideOf(row, b) * jump.velocity;
-	}
+	const JumpWork<Space> ofJump(s.bodies, rows, jump.velocity,
+	                             [&](int b) { return std::find(jump.moved.begin(), jump.moved.end(), b) != jump.moved.end(); });
 	CoupleRows<Space> none;
 	const ImpulseReport report = solveSparsely(s.bodies, rows, none);
 	s.note(report.residual, report.solved);
-	for (size_t k = 0; k < rows.size(); ++k)
-		for (int b : jump.moved) // impulse times the mean of the base's velocities before and after, but where it catches what slides
-			if (const int side = sideOf(rows[k], b))
-				response.work += workOfCatch(rows[k], before[k], relativeVelocity(s.bodies, rows[k])) +
-				                 side * rows[k].impulse.dot(s.bodies[b].linear() - 0.5 * jump.velocity);
+	for (const ImpulsePoint<Space>& row : rows)
+		for (int b : jump.moved)
+			response.work += (row.body1 == b ? 1 : row.body2 == b ? -1 : 0) * row.impulse.dot(s.bodies[b].linear());
+	response.work += ofJump.beyond(s.bodies, rows);
 
 	std::vector<HeldPoint> held;
 	for (const HeldPoint& p : touching) {

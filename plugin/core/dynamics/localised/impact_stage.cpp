@@ -1,6 +1,6 @@
 #include "dynamics/localised/impact_stage.hpp"
 #include "dynamics/model/scales.hpp"
-#include "impact/caught_slip.hpp"
+#include "impact/jump_work.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 
@@ -268,26 +268,13 @@ RockingImpactResult ImpactStage<K>::pulse(RigidSystem<K>& s, const Settings& set
 			body.velocity.template head<K::dimension>() += jump;
 	gather(s, settings, {});
 	limit(s, 0);
-	std::vector<typename K::Vector> before;
-	for (const ImpulsePoint<K>& point : impact.points) {
-		before.push_back(masonry::relativeVelocity(s.bodies, point));
-		for (const auto& [b, sign] : {std::pair(point.body1, 1.), std::pair(point.body2, -1.)})
-			if (s.bodies[b].drive == drive)
-				before.back() += sign * jump;
-	}
+	const JumpWork<K> ofJump(s.bodies, impact.points, jump, [&](int b) { return s.bodies[b].drive == drive; });
 	const auto result = applyRockingImpact(s.bodies, impact);
 	findJammed(result);
 	settle(s);
-	// While the base speeds up from v - jump to v, its impulse works on the mean of the two, but where it catches what slides.
-	double work = result.work;
-	for (size_t k = 0; k < impact.points.size(); ++k) {
-		const ImpulsePoint<K>& point = impact.points[k];
-		for (const auto& [b, sign] : {std::pair(point.body1, 1.), std::pair(point.body2, -1.)})
-			if (s.bodies[b].drive == drive)
-				work += workOfCatch(point, before[k], masonry::relativeVelocity(s.bodies, point)) - 0.5 * sign * point.impulse.dot(jump);
-	}
-	s.baseWork += work;
-	s.impactDissip += result.energyLost + work - result.work;
+	const double beyond = ofJump.beyond(s.bodies, impact.points);
+	s.baseWork += result.work + beyond;
+	s.impactDissip += result.energyLost + beyond;
 	return result;
 }
 

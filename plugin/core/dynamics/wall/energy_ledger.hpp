@@ -39,7 +39,7 @@ public:
 	const LaneArray& velocityBefore() const { return before; }
 	// Returns the work of the prescribed bodies by the impulses of the last solve, J.
 	double work(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmResults<K>& results) const;
-	// The same of a base that jumps, where it catches what slides (impact/caught_slip.hpp), beside that on the mean of its velocities, J.
+	// The same of a base that jumps, where it catches what slides (impact/jump_work.hpp), beside that on the mean of its velocities, J.
 	double workOfCatches(const ContactSet<K>& contacts, const AdmmResults<K>& results) const;
 	// Whether the contacts, with the impulses of the last solve, make more energy than the error of a sound step can. `load`: change of
 	// velocity by the forces in the step, of length h, in packs. What friction takes is left out.
