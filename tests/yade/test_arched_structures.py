@@ -1,4 +1,5 @@
-"""A dome, a wall above an arch, arches on piers: least thickness, multipliers and thrust against limit analysis (validation/convex, cases a23 to a26)."""
+"""Arches, a dome, a wall above an arch, arches on piers: least thickness, multipliers and thrust against limit analysis (validation/convex, cases a23 to a26,
+a28 and a29)."""
 
 import sys
 from pathlib import Path
@@ -8,12 +9,13 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "validation" / "convex"))
 
+import arches  # noqa: E402
 import domes  # noqa: E402
 import statics  # noqa: E402
 import structures  # noqa: E402
 
 
-@pytest.mark.parametrize("case", structures.IN_SECONDS, ids=lambda case: case.__name__)
+@pytest.mark.parametrize("case", [*structures.IN_SECONDS, *arches.IN_SECONDS], ids=lambda case: case.__name__)
 def test_against_limit_analysis(case):
     found = list(case())
     for row in found:
