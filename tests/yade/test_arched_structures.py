@@ -1,11 +1,14 @@
-"""Arches, a dome, a wall above an arch, arches on piers: least thickness, multipliers and thrust against limit analysis (validation/convex, cases a23 to a26,
-a28 and a29)."""
+"""Arches, a dome, a wall above an arch, arches on piers: least thickness, multipliers, hinges and thrust against limit analysis (validation/convex, cases a16, a23
+to a26, a28 and a29)."""
 
+import math
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from masonry import dem
+from yade import O
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "validation" / "convex"))
 
@@ -22,6 +25,41 @@ def test_against_limit_analysis(case):
         print(row)
         assert row.holds(), str(row)
     assert found
+
+
+def names(speeds):
+    """As 'e0 i2 e4 i7': hinges at the extrados or the intrados, and joints that slide (s), counted from the springer towards which the arch is pulled.
+    speeds: (joints, 3), from the left: opening at the extrados, opening at the intrados, slip."""
+    return " ".join(f"{letter}{k}" for k, joint in enumerate(speeds[::-1]) for letter, speed in zip("ies", joint, strict=True) if speed > 0)
+
+
+def failure_in_simulation(friction, **options):
+    """speeds as in names(), of the arch of a16 on a tilting table."""
+    ids = arches.build(7, 0.15, friction, math.radians(157.5))
+    table = dem.TiltTable(**options)
+    result = table.bisect(progress=False)
+    assert not result.doubts, result.doubts
+    before = [O.bodies[id].state.ori for id in ids]
+    table.trial(1.01 * result.multiplier)  # leaves the scene as it collapses, so that it shows on which side joints open
+    turned = np.diff([(O.bodies[id].state.ori * ori.conjugate()).toRotationVector()[1] for id, ori in zip(ids, before, strict=True)])
+    joints = np.sort(result.joints, order="id1")  # from the left
+    opening, slip = joints["opening"] * joints["opens"], joints["slip"] * joints["slides"]
+    return np.column_stack([opening * (turned > 0), opening * (turned < 0), slip])  # turned about y > 0: the right stone leans away at the extrados
+
+
+@pytest.mark.parametrize("method", ("localised", "wall"))
+@pytest.mark.parametrize("model", ("planar", "spatial"))
+@pytest.mark.parametrize("friction, wanted", ((5.0, "e0 i2 e4 i7"), (0.5, "s0 i2 e4 i7"), (0.4, "s0 i2 e4 i7")))
+def test_where_an_arch_fails(friction, wanted, model, method):
+    """Hinges are where limit analysis has them, on the same side; with a friction coefficient of 0.4 three joints open and one slides. Without slip joints also open in
+    the same proportion, which the movement of TiltTable changes, 2e-3 of the smallest size. With slip they do not, since the linear program lets slip dilate."""
+    right = statics.mechanism(statics.arch(7, 0.15, math.radians(157.5)), friction)
+    right[right < 1e-9] = 0  # round-off of the program
+    found = failure_in_simulation(friction, model=model, method=method)
+    print(found / found.max(), right)
+    assert names(right) == wanted and names(found) == wanted
+    if friction > 1:
+        assert np.allclose(found / found.max(), right, rtol=0, atol=2e-3)
 
 
 def test_limit_analysis_itself():

@@ -85,15 +85,31 @@ def stands(structure, friction):
     return _program(structure, friction, np.zeros(3 * len(structure.joints) + 1)) is not None
 
 
-def multiplier(structure, friction, direction=(1, 0), load=None):
-    """Largest multiplier of a load (default: all weights, along `direction`) with which the structure can stand; inf if there is none."""
+def _largest(structure, friction, direction, load):
+    """The program whose multiplier of a load (default: all weights, along `direction`) is the largest."""
     if load is None:
         load = np.zeros((len(structure.blocks), 3))
         load[:, :2] = structure.weights[:, None] * np.asarray(direction)
     objective = np.zeros(3 * len(structure.joints) + 1)
     objective[-1] = -1
-    result = _program(structure, friction, objective, load)
+    return _program(structure, friction, objective, load)
+
+
+def multiplier(structure, friction, direction=(1, 0), load=None):
+    """Largest multiplier of a load (default: all weights, along `direction`) with which the structure can stand; inf if there is none."""
+    result = _largest(structure, friction, direction, load)
     return np.nan if result is None else np.inf if result.status == 3 else result.x[-1]
+
+
+def mechanism(structure, friction, direction=(1, 0), load=None):
+    """How the structure fails at that multiplier: (joints, 3) of the speeds at which the two corners of every joint open and at which it slips, relative to the
+    largest. They are the prices of the constraints in the program (its dual): a corner opens where a negative pressure would let the multiplier grow, a joint slips
+    where more friction would. Openings are without the dilation of slip."""
+    result = _largest(structure, friction, direction, load)
+    opens = result.lower.marginals[:-1].reshape(-1, 3)[:, :2]
+    slips = np.abs(result.ineqlin.marginals.reshape(-1, 2)).sum(axis=1)
+    speeds = np.column_stack([opens, slips])
+    return speeds / speeds.max()
 
 
 def thrust(structure, friction, joints=(0,)):
