@@ -152,6 +152,33 @@ def test_prisms_tip_at_the_edge_of_their_base_in_every_direction(sides):
         assert found == pytest.approx(0.5 * math.cos(math.pi / sides) / math.cos(to_normal), rel=1e-3), turn
 
 
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("weights", (0, 1, 100))
+def test_a_keystone_without_slip_locks(weights, model, method):
+    """Sides at 20 degrees from the vertical, between two blocks on a floor. Joints without slip bear any push: the forces of the sides may be upright, and the
+    blocks bear them within their beds. The solvers leave a residual of 1e-9 of the speed that weight and push give in a step: in a second the blocks move
+    by that speed times a second at most, here ten times."""
+    material = stone()
+    base = dem.base((12, 3, 0.2), material)
+    rise = math.tan(math.radians(20))
+    inner, top, foot = 0.3, 0.3 + rise, 0.3 + 0.3 * rise
+    section = [(inner, 0), (3, 0), (3, 1), (top, 1)]
+    sides = [dem.prism([(sign * x, z) for x, z in section[::sign]], 1.0, material, axis="y") for sign in (1, -1)]
+    key = dem.prism([(-foot, 0.3), (foot, 0.3), (top, 1), (-top, 1)], 1.0, material, axis="y")
+    weight = 9.81 * O.bodies[key].state.mass
+    O.forces.setPermF(key, Vector3(0, 0, -weights * weight))
+    places = [Vector3(O.bodies[id].state.pos) for id in (*sides, key)]
+    move(model=model, method=method)
+    dem.run(1.0, progress=False)
+    moved = max((O.bodies[id].state.pos - before).norm() for id, before in zip((*sides, key), places, strict=True))
+    carried = dem.reactions(base)["force"].sum(axis=0)[2] / (sum(O.bodies[id].state.mass * 9.81 for id in (*sides, key)) + weights * weight)
+    print(f"moved {moved:.1e} m, carried {carried - 1:.1e}, failures {O.engines[-1].failures}")
+    assert O.engines[-1].failures == 0
+    assert moved < 10 * 1e-9 * (1 + weights) * 9.81 * O.dt * O.time
+    assert carried == pytest.approx(1, rel=1e-9)
+
+
 # --- balances ---
 
 
