@@ -10,15 +10,17 @@ from typing import NamedTuple
 import numpy as np
 from masonry._given import array_given, finite_numbers, is_whole, shown
 from masonry.dem import solids, voussoirs
+from masonry.dem.abutments import between, reshape, skewbacks
 from masonry.dem.bodies import block_body, upper_face, world_shape
 from masonry.dem.layouts import whole
 from masonry.dem.meshes import read_meshes
-from masonry.dem.placing import check_support, convex_bodies, moved, one_body, top_of, turned
+from masonry.dem.placing import check_support, convex_bodies, convex_body, moved, one_body, polyhedron, top_of, turned
 from masonry.dem.rubble import rubble_layout
 from yade import Body, O, Quaternion, Vector3
 
-# Height above the lowest corner, relative to the extent, up to which a corner stands on the ground; difference of height of two abutments, relative to the span.
+# Height above the lowest corner, relative to the extent, up to which a corner stands on the ground.
 _LEVEL = 1e-9
+_AT = "two finite numbers, in m"
 
 
 class Geometry(NamedTuple):
@@ -124,21 +126,22 @@ def _bottom(blocks, lowest, extent):
     level = [block[block[:, 2] - lowest <= _LEVEL * extent.max(), :2] for block in blocks]
     middles = [corners.mean(axis=0) for corners in level if len(corners) >= 3]
     if not middles:
-        raise ValueError("on: the blocks would stand on edges, because the lowest joints are not level: springers=True gives an arch level feet; without `on` the "
-                         "blocks stay where their layout has them")
+        raise ValueError("on: the blocks would stand on edges, because the lowest joints are not level: an arch gets skewbacks in two abutments, on=(left, right), or level feet by "
+                         "springers=True; without `on` the blocks stay where their layout has them")
     return np.array(middles)
 
 
 def _structure(blocks, material, on, at=(0.0, 0.0)):
     """Ids of the blocks of a layout on the upper face of the body `on`, or on those of two, left and right: then `at` counts from the middle between these."""
-    bodies = convex_bodies(blocks, material)
     if on is None:
-        return O.bodies.append(bodies)
+        return O.bodies.append(convex_bodies(blocks, material))
     points = np.concatenate(blocks)
     lowest, extent = points[:, 2].min(), np.ptp(points, axis=0)
     bottom = _bottom(blocks, lowest, extent)
     if np.iterable(on):
-        foot, turn = _between(on, at)
+        middle, turn = between(on)
+        shift = finite_numbers("at", at, 2, _AT)
+        foot = middle + turn * Vector3(*shift, 0)
         for end, middle in zip(on, (bottom[0], bottom[-1])):
             face, axes, _ = upper_face(block_body(end, "on"), f"on = {end}")
             place = axes.conjugate() * (foot + turn * Vector3(middle[0], middle[1], 0) - face)
@@ -146,23 +149,31 @@ def _structure(blocks, material, on, at=(0.0, 0.0)):
     else:
         check_support(bottom, on, at, extent)
         foot, turn = top_of(on, at)
+    bodies = convex_bodies(blocks, material)
     for body in bodies:
         moved(turned(moved(body, Vector3(0, 0, -lowest)), turn), foot)
     return O.bodies.append(bodies)
 
 
-def _between(on, at):
-    """(place, turn) of the middle between the upper faces of two bodies, left and right, which must be level with each other; x goes from left to right."""
-    if len(on) != 2:
-        raise ValueError(f"on = {shown(on)}: must be the id of one body, or the ids of two, left and right")
-    left, right = (top_of(one)[0] for one in on)
-    along = right - left
-    level = math.hypot(along[0], along[1])
-    if not level > 0 or not abs(along[2]) <= _LEVEL * level:
-        raise ValueError(f"on = {shown(tuple(on))}: their upper faces must be level and beside each other: they are {level:.4g} m apart along the ground and "
-                         f"{abs(along[2]):.4g} m in height")
-    turn, at = Quaternion(Vector3.UnitZ, math.atan2(along[1], along[0])), finite_numbers("at", at, 2, "two finite numbers, in m")
-    return (left + right) / 2 + turn * Vector3(at[0], at[1], 0), turn
+def _arch(blocks, material, on, at, springers):
+    """Ids of the blocks of the layout of an arch or a vault, as of _structure(). Two bodies between which it has inclined joints get skewbacks; the ids begin and end with theirs."""
+    joints = voussoirs.springing(blocks)
+    inner, outer = joints[0]
+    points = np.concatenate(blocks)
+    if springers or not np.iterable(on) or abs(outer[1] - inner[1]) <= _LEVEL * np.ptp(points, axis=0).max():
+        return _structure(blocks, material, on, at)
+    shift, aside = finite_numbers("at", at, 2, _AT)
+    if shift != 0:
+        raise ValueError(f"at = {shown(tuple(at))}: its x must be 0 where the arch has skewbacks, which are in the inner faces of the abutments")
+    foot, turn, cut = skewbacks(on, aside, joints, np.ptp(points[:, 1]))
+    abutments = [convex_body(polyhedron(corners, f"on = {body.id}"), body.mat) for body, corners in cut]
+    bodies = convex_bodies(blocks, material)
+    for body in (*bodies, *abutments):
+        moved(turned(body, turn), foot)
+    for (body, _), made in zip(cut, abutments):
+        reshape(body, made)
+    left, right = (body.id for body, _ in cut)
+    return [left, *O.bodies.append(bodies), right]
 
 
 def column(drums, radii, heights, material, on=None, sides=24, fit="area", at=(0.0, 0.0)):
@@ -184,12 +195,17 @@ def arch(span, rise, thickness, n, depth, material, on=None, shape="circular", m
 
     span, rise    of the intrados, or of the middle line where `measured` is 'middle', m
     thickness     from intrados to extrados, m; depth: along y
-    on            id of the body on which it stands, or of two bodies: (left, right)
+    on            id of the body on which it stands, or of two bodies: (left, right). Where its springing is inclined, two bodies get skewbacks.
     shape         'circular' (rise at most span/2), or 'pointed' (rise above span/2): two arcs with their centres on the springing line. The keystone of a pointed
                   arch of odd n has a flat soffit.
     springers     True: with two more stones, which have the inclined joint as their upper face and are level below. The ids begin and end with theirs. They
-                  are free; O.bodies[id].dynamic = False fixes one."""
-    return _structure(voussoirs.arch_layout(span, rise, thickness, n, depth, shape, measured, springers), material, on, at)
+                  are free; O.bodies[id].dynamic = False fixes one.
+
+    Skewbacks: the arch stands between two abutments, boxes or convex blocks. The ends of its intrados are on their inner faces, which are `span` apart (with 'middle' less:
+    the error says how much), and the ends of its extrados are at the height of their upper faces. The inner upper edge of each abutment is cut off along the first or the
+    last joint, over its whole depth. An abutment keeps its id, material and colour, and stays free or fixed; its shape becomes a dem.ConvexBlock, with the mass and the
+    inertia of what is left. The ids begin and end with those of the abutments. A body that has been in a step, has a tie or is a union is refused."""
+    return _arch(voussoirs.arch_layout(span, rise, thickness, n, depth, shape, measured, springers), material, on, at, springers)
 
 
 def flat_arch(span, depth, n, below, width, material, on=None, springers=False, at=(0.0, 0.0)):
@@ -197,8 +213,8 @@ def flat_arch(span, depth, n, below, width, material, on=None, springers=False, 
 
     span, depth    of the opening, and height of the arch, m; width: along y
     below          depth under the soffit of the point through which all joints go, m
-    on, springers  as in dem.arch()"""
-    return _structure(voussoirs.flat_arch_layout(span, depth, n, below, width, springers), material, on, at)
+    on, springers  as in dem.arch(): on two bodies it has skewbacks, without springers"""
+    return _arch(voussoirs.flat_arch_layout(span, depth, n, below, width, springers), material, on, at, springers)
 
 
 def barrel_vault(span, rise, thickness, n, length, along, material, on=None, shape="circular", measured="intrados", bond="running", springers=False, at=(0.0, 0.0)):
@@ -208,7 +224,7 @@ def barrel_vault(span, rise, thickness, n, length, along, material, on=None, sha
     length    of the vault, m; along: number of whole blocks in a course
     bond      'running': every second course begins and ends with a half block; 'stack': joints run through
     span, rise, thickness, on, shape, measured, springers    as in dem.arch()"""
-    return _structure(voussoirs.barrel_vault_layout(span, rise, thickness, n, length, along, shape, measured, bond, springers), material, on, at)
+    return _arch(voussoirs.barrel_vault_layout(span, rise, thickness, n, length, along, shape, measured, bond, springers), material, on, at, springers)
 
 
 def dome(radius, thickness, courses, per_course, material, on=None, oculus=0.0, half_angle=math.pi / 2, at=(0.0, 0.0)):

@@ -120,6 +120,11 @@ def extruded(outline, front, back):
     return np.concatenate([np.insert(outline, 1, y, axis=1) for y in (front, back)])
 
 
+def springing(blocks):
+    """(2, 2, 2): intrados and extrados point (x, z) of the first and of the last joint of a layout without springers, by the numbers that profiles() gives corners."""
+    return np.stack([blocks[0][[0, 3]], blocks[-1][[1, 2]]])[..., [0, 2]]
+
+
 def arch_layout(span, rise, thickness, n, depth, shape="circular", measured="intrados", springers=False):
     """Blocks of an arch, left to right."""
     joints, crown = arch_joints(span, rise, thickness, n, shape, measured)
