@@ -1,5 +1,4 @@
 #include "oracle/polyhedra.hpp"
-#include "shape/convex_hull.hpp"
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -18,8 +17,38 @@ std::vector<Vector3> placed(const ConvexPolyhedron& shape, const Pose& pose)
 	return points;
 }
 
+constexpr double roundOff = 1e-9; // m and rad; shapes measure about 1 m
+
+// Returns whether the points, seen along a line, lie in an angle of at most pi at it, and the ends of that angle: from `first` to `last`
+// counter-clockwise about `along`.
+bool angleAround(const Vector3& start, const Vector3& along, const std::vector<Vector3>& points, Vector3& first, Vector3& last)
+{
+	const auto turn = [&](const Vector3& from, const Vector3& to) { return along.dot(from.cross(to)); };
+	bool found = false;
+	for (const Vector3& point : points) {
+		Vector3 aside = point - start;
+		aside -= along.dot(aside) * along;
+		const double distance = aside.norm();
+		if (distance < roundOff)
+			continue;
+		aside /= distance;
+		if (!found)
+			first = last = aside;
+		else if (turn(first, aside) >= -roundOff)
+			last = turn(last, aside) > 0 ? aside : last;
+		else if (turn(aside, last) >= -roundOff)
+			first = aside;
+		else
+			return false;
+		found = true;
+	}
+	return found;
+}
+
 } // namespace
 
+// Two points are on an edge of the hull if all others lie in an angle at it. The faces beside that edge go through the points at the ends
+// of the angle.
 Slab slabOfDifferences(const ConvexPolyhedron& shape1, const Pose& pose1, const ConvexPolyhedron& shape2, const Pose& pose2)
 {
 	std::vector<Vector3> differences;
@@ -28,17 +57,25 @@ Slab slabOfDifferences(const ConvexPolyhedron& shape1, const Pose& pose1, const 
 		for (const Vector3& b : points2)
 			differences.push_back(b - a);
 	Slab best;
-	for (const auto& [i, j, k] : masonry::hullTriangles(differences)) {
-		const Vector3 area = (differences[j] - differences[i]).cross(differences[k] - differences[i]);
-		if (!(area.norm() > 0))
-			continue;
-		const Vector3 normal = -area.normalized();
-		double width = std::numeric_limits<double>::infinity();
-		for (const Vector3& difference : differences)
+	const auto look = [&](const Vector3& normal, const Vector3& onFace) {
+		double width = normal.dot(onFace);
+		const double least = std::max(best.width, width - roundOff); // below that it is no face, or no better one
+		for (const Vector3& difference : differences) {
 			width = std::min(width, normal.dot(difference));
-		if (width > best.width)
-			best = {width, normal};
-	}
+			if (width <= least)
+				return;
+		}
+		best = {width, normal};
+	};
+	for (std::size_t i = 0; i < differences.size(); ++i)
+		for (std::size_t j = 0; j < i; ++j) {
+			const Vector3 &start = differences[i], along = differences[j] - start;
+			Vector3 first, last;
+			if (along.norm() > roundOff && angleAround(start, along.normalized(), differences, first, last)) {
+				look(along.cross(first).normalized(), start);
+				look(last.cross(along).normalized(), start);
+			}
+		}
 	return best;
 }
 

@@ -17,7 +17,8 @@ struct Slab {
 	Vector3 normal;        // of that slab, from body 1 to body 2
 };
 
-// From the convex hull of the n1 n2 differences of the vertices. No face or edge of a shape is used.
+// From the faces of the convex hull of the n1 n2 differences of the vertices, found by trying each two of them as an edge. It uses no face
+// or edge of a shape, and no hull of the plugin.
 Slab slabOfDifferences(const ConvexPolyhedron& shape1, const Pose& pose1, const ConvexPolyhedron& shape2, const Pose& pose2);
 
 // The widest slab along all normals of faces and all products of two edges, each with a look at all vertices.

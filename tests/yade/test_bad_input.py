@@ -200,8 +200,15 @@ def test_units_of_densities(density, said):
 
 
 def test_units_of_sizes():
-    dem.block((400, 200, 200), stone(), on=dem.base((4000, 1000, 100), stone()))
-    assert "the longest block measures 400 m: sizes are in m\n" in said_by(dem.engines)
+    """A free block is as large as a convex one may be; a base, which does not move, may be larger."""
+    base = dem.base((4000, 1000, 100), stone())
+    dem.block((60, 30, 30), stone(), on=base)
+    assert "the longest block measures 60 m: sizes are in m\n" in said_by(dem.engines)
+    for size in ((1000,) * 3, (1e-6,) * 3):
+        refuses(lambda: dem.block(size, stone(), on=base), f"size = {size}: extent = {size[0]:g}: must be from 0.001 to 100, in m")
+    refuses(lambda: dem.wall(4, 3, (400, 200, 175), stone(), base), "size = (400, 200, 175): extent = 400: must be from 0.001 to 100, in m")
+    refuses(lambda: dem.arch(3000, 1500, 300, 9, 600, stone(), on=base), "span = 3000, rise = 1500, thickness = 300, n = 9: voussoirs: extent = ")
+    assert len(O.bodies) == 2
 
 
 @pytest.mark.parametrize("below, above, said", (

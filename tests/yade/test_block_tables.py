@@ -110,7 +110,7 @@ def test_capitals_and_blanks(ending, text, tmp_path):
 
 @pytest.mark.parametrize("rows, words", (
     ([], ("at least one row",)), ([GOOD, {**GOOD, "size_x": 0}], ("row 1", "size_x = 0", "positive")), ([{**GOOD, "x": "far"}], ("row 0", "x = 'far'")),
-    ([{**GOOD, "y": nan}], ("y = nan", "finite")), ([{**GOOD, "size_x": 1e300}], ("size_x = 1e+300", "1e+06")),
+    ([{**GOOD, "y": nan}], ("y = nan", "finite")), ([{**GOOD, "size_x": 1e300}], ("size_x = 1e+300", "1e+06")), ([{**GOOD, "size_x": 400}], ("row 0: extent = 400: must be from 0.001 to 100, in m",)),
     ([{k: v for k, v in GOOD.items() if k != "size_z"}], ("row 0", "there is no column size_z")), ([(0, 0, 0, 1, 1)], ("size_z = None",)),
     ([(0, 0, 0, 1, 1, 1, 0, 0, "", "", "", "", "", 5)], ("row 0", "more values")), *(([{**GOOD, "rotation_y": turn}], (f"rotation_y = {turn}", "rad")) for turn in (90, 6.3, -6.3)), (None, ("table = None", "rows")), ([{**GOOD, "sizex": 1}], ("row 0", "'sizex'", "size_x", "id, name")),
     ([{**GOOD, "rotation_z": inf}], ("rotation_z = inf",)), ([{**GOOD, "qw": 1}], ("there is no column qx",)),

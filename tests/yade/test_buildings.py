@@ -380,7 +380,8 @@ def test_a_house_stands():
 
 BAD = [
     (dict(plan={"a": ((0, 0), (3, 1))}), ("plan['a']", "along x or y")),
-    (dict(brick=(250, 120, 300)), ("plan['south']", "its brick is 250 m long", "half a brick long at least", "in m")),
+    (dict(brick=(250, 120, 300)), ("brick of wall 'south' = (250, 120, 300): extent = 300: must be from 0.001 to 100, in m",)),
+    (dict(brick=(25, 12, 30)), ("plan['south']", "its brick is 25 m long", "half a brick long at least", "in m")),
     (dict(plan={"a": ((0, 0), (3, 0)), "b": ((1, 0.1), (1, 3))}), ("'a' and 'b' overlap near (1, 0)", "axes")),
     (dict(plan={"a": ((0, 0), (3, 0)), "b": ((1, 0.2), (1, 3))}), ("'a' and 'b' leave a gap of 0.05 m near (1, 0)",)),
     (dict(plan={"a": ((0, 0), (3, 0)), "b": ((2.5, 0.1), (5, 0.1))}), ("'a' and 'b' overlap at (2.75",)),

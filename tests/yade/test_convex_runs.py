@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from convex_hash import convex_hash
 from masonry import dem, results
-from rocking_scene import Balance, bits, rigid_engines, steps, stone
+from rocking_scene import Balance, bits, quiet_engines, rigid_engines, steps, stone
 from yade import O, Quaternion, Vector3
 
 METHODS, MODELS = ("localised", "wall"), ("planar", "spatial")
@@ -59,6 +59,20 @@ def test_natural_restitution_of_a_block_that_is_not_symmetric(angle, old, new, m
     assert impact["restitution"] == pytest.approx(right, rel=1e-6)  # of the constants above
     drop = math.hypot(*ARMS[old]) * math.cos(math.atan2(abs(ARMS[old][0]), ARMS[old][1]) - 0.1) - CENTER[1]
     assert impact["velocity"] == pytest.approx(math.sqrt(2 * 9.81 * drop / (GYRATION2 + ARMS[old] @ ARMS[old])), rel=1e-6)
+
+
+@pytest.mark.parametrize("model, method, error", [(model, method, {"localised": 1e-6, "wall": 6e-3}[method]) for model in MODELS for method in METHODS] + [("compliant", None, 2e-5)])
+def test_restitution_of_1_is_capped_where_it_would_make_energy(model, method, error):
+    """The energy I w^2/2 of the rotation about the new pivot is at most that about the old one, I = k^2 + r^2: C is at most sqrt(I_old/I_new), 0.947331 from A to B
+    and more than 1 from B to A. `wall` gives up to a step's gravity away."""
+    most = math.sqrt((GYRATION2 + ARMS["A"] @ ARMS["A"]) / (GYRATION2 + ARMS["B"] @ ARMS["B"]))
+    for angle, right in ((-0.1, most), (0.1, 1)):
+        rocking_trapezoid(angle, 1.0, **({} if method is None else {"model": model, "method": method}))
+        if method is None:
+            O.engines = quiet_engines()
+        impact = run_to_impact()[0]
+        assert impact["restitution_asked"] == 1 and impact["capped"] == (right < 1)
+        assert (1 - error) * right < impact["restitution"] < (1 + 1e-6) * right
 
 
 def test_free_rocking_of_a_block_that_is_not_symmetric():

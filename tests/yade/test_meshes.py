@@ -99,6 +99,9 @@ L_CORNERS = [(x, y, z) for z in (0, 1) for x, y in L_SHAPE]
 L_FACES = [[5, 4, 3, 2, 1, 0], [6, 7, 8, 9, 10, 11], *([k, (k + 1) % 6, 6 + (k + 1) % 6, 6 + k] for k in range(6))]
 WRONG = [
     ("a.obj", obj((L_CORNERS, L_FACES)), "part 0: the edge from (1, 1, 0) to (1, 1, 1) is concave, a corner of one face beside it is 1 m above the other"),
+    ("a.obj", obj((CUBE, FACES), *[(shifted(L_CORNERS, x), L_FACES) for x in (3, 6)]),
+     "part 1: the edge from (4, 1, 0) to (4, 1, 1) is concave, a corner of one face beside it is 1 m above the other; part 2: the edge from (7, 1, 0) to (7, 1, 1) is concave, a "
+     "corner of one face beside it is 1 m above the other: a block must be convex; divide it into convex parts"),
     ("a.obj", obj((CUBE, FACES[1:])), "part 0: one face only has the edge from (0, 0, 0) to (1, 0, 0): the surface must be closed"),
     ("a.obj", obj((CUBE, [FACES[0][::-1], *FACES[1:]])), "part 0: 2 faces go along the edge from (0, 0, 0) to (1, 0, 0) in the same sense"),
     ("a.obj", b"v 1 2 x", "line 1: 'v 1 2 x': must hold numbers"),
@@ -119,6 +122,12 @@ def test_wrong_files_are_refused(name, data, sentence, tmp_path):
     with pytest.raises(ValueError) as refused:
         meshes.read_meshes(tmp_path / name)
     assert str(refused.value).startswith(f"path = {tmp_path / name}: {sentence}")
+
+
+def test_of_many_concave_parts_the_first_are_named(tmp_path):
+    (tmp_path / "a.obj").write_bytes(obj(*[(shifted(L_CORNERS, 3 * k), L_FACES) for k in range(7)]))
+    with pytest.raises(ValueError, match="; part 4: .* above the other; and 2 more: a block must be convex"):
+        meshes.read_meshes(tmp_path / "a.obj")
 
 
 def test_wrong_arguments_are_refused(tmp_path):

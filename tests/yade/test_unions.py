@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from masonry import dem, results
+from masonry.dem.meshes import write_obj
 from rocking_scene import refuses, rigid_engines, said_by, stone
 from yade import O, Quaternion, Vector3
 
@@ -363,6 +364,15 @@ def test_tables_checks_and_results(tmp_path):
     results.write_paraview(history, str(tmp_path / "p.pvd"))
     results.report(history, str(tmp_path / "r.html"))
     results.draw(history, path=str(tmp_path / "p.png"))
+
+
+def test_pieces_of_a_concave_mesh_are_joined(tmp_path):
+    """An L that another program has turned, cut and written in single precision."""
+    turn = np.array(Quaternion(Vector3(0.3, 0.5, 1).normalized(), 0.7).toRotationMatrix()).reshape(3, 3)
+    faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    write_obj(tmp_path / "pieces.obj", [(name, np.float32(cuboid(*one) @ turn.T), faces) for name, one in (("foot", FOOT), ("stem", STEM))])
+    id = dem.union(dem.blocks_from_mesh(tmp_path / "pieces.obj", stone()))
+    assert dem.geometry(id).volume == pytest.approx(DEPTH * AREAS.sum(), rel=1e-6) and O.bodies[id].shape.parts == 2
 
 
 def test_compliant_joints_refuse_unions():

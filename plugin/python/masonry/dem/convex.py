@@ -257,7 +257,8 @@ def rubble_wall(length, height, thickness, size, material, on=None, seed=None, j
 
 def blocks_from_mesh(path, material, unit="m"):
     """Free blocks from a mesh, where it has them: .obj, .ply, .stl, or .json (COMPAS meshes, or mappings with `vertices` and `faces`). Each connected part is a
-    block. Faces in one plane are made one, and counted. A part that is open or concave is refused, with its edge. Returns the ids in the order of the file.
+    block. Faces in one plane are made one, and counted. Parts that are open or concave are refused, with their edges: concave ones are to be cut into convex pieces, which
+    dem.union() joins again. Returns the ids in the order of the file.
 
     unit    of the file: 'm', 'cm', 'mm', 'in' or 'ft'"""
     parts = read_meshes(path, unit)

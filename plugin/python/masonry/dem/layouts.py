@@ -13,6 +13,8 @@ from masonry._given import finite_numbers, number_given, shown, whole_given
 _FIT = 1e-6
 # Sizes that a body may have, m: volumes and moments of inertia are then far from overflow, whatever the unit of length that a script uses.
 SIZES = 1e-6, 1e6
+# Extents that a free block may have, m: others come from a wrong unit.
+EXTENTS = 1e-3, 1e2
 # Most blocks of a layout, and most courses: more do not fit into memory.
 _MOST = 1_000_000
 
@@ -23,6 +25,20 @@ def positive_size(name, size):
     values = finite_numbers(name, size, 3, what)
     if not SIZES[0] <= min(values) <= max(values) <= SIZES[1]:
         raise ValueError(f"{name} = {tuple(size)}: must be {what}")
+    return values
+
+
+def check_extent(points, name):
+    """ValueError that begins with `name` unless points (k, 3) span what a free block may."""
+    extent = np.ptp(points, axis=0).max() if len(points) else 0.0
+    if np.isfinite(points).all() and not EXTENTS[0] <= extent <= EXTENTS[1]:
+        raise ValueError(f"{name}: extent = {extent:.4g}: must be from {EXTENTS[0]:g} to {EXTENTS[1]:g}, in m")
+
+
+def block_size(name, size):
+    """positive_size() of a free block."""
+    values = positive_size(name, size)
+    check_extent([(0, 0, 0), values], f"{name} = {tuple(size)}")
     return values
 
 
@@ -78,10 +94,10 @@ def wall_modules(courses=None, per_course=None, size=None, length=None, height=N
         if not (math.isfinite(per_course) and 2 * per_course == int(2 * per_course)):
             raise ValueError(f"per_course = {per_course}: must be a multiple of one half")
     if size is not None:
-        size = positive_size("size", size)
+        size = block_size("size", size)
     if thickness is not None:
         outer = positive_size("(length, thickness, height)", (length, thickness, height))
-        size = positive_size("size of a block", ((outer[0] + gap) / per_course - gap, outer[1], outer[2] / courses))
+        size = block_size("size of a block", ((outer[0] + gap) / per_course - gap, outer[1], outer[2] / courses))
     elif length is not None:
         courses = _fitted("height", height, size[2])
         per_course = _fitted("length + gap", length + gap, (size[0] + gap) / 2) / 2
@@ -193,7 +209,7 @@ def return_layout(courses, along_x, along_y, size, gap=0.0):
     """Two legs that meet in a corner at their ends of least x and y. In even courses the leg along x runs through the corner, in odd
     ones the leg along y; the other starts at its face with a whole block. The lap is the thickness."""
     courses, along_x, along_y = whole("courses", courses, 1), whole("along_x", along_x, 2), whole("along_y", along_y, 2)
-    size = positive_size("size", size)
+    size = block_size("size", size)
     if not size[0] / 4 <= size[1] <= size[0] * 3 / 4:
         raise ValueError(f"size = {tuple(size)}: its y must be from 1/4 to 3/4 of its x, so that the blocks lap by a quarter at least")
     _head_joint(gap, size, 1 / 4)
@@ -217,7 +233,7 @@ def return_layout(courses, along_x, along_y, size, gap=0.0):
 def pier_layout(courses, size, per_course=1):
     """A column: one block a course, or two side by side, turned by a quarter turn from course to course."""
     courses = whole("courses", courses, 1)
-    size = positive_size("size", size)
+    size = block_size("size", size)
     z = size[2] * (np.arange(courses) + 0.5)
     if per_course == 1:
         return _joined([(0, 0, z, *size)])

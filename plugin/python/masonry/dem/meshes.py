@@ -15,6 +15,8 @@ SUFFIXES = ".obj", ".ply", ".stl", ".json"
 # Height of a corner above the plane of a face next to it, relative to the size of the block, from which on the edge between them is concave; round-off of
 # files in single precision stays below it.
 _CONCAVE = 1e-5
+# Concave parts that a message names one by one; more are counted.
+_NAMED = 5
 _PLY_TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4", "double": "f8",
               "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4", "float32": "f4", "float64": "f8"}
 
@@ -147,8 +149,13 @@ def read_meshes(path, unit="m"):
         found = [(name, corners * UNITS[unit], faces) for name, *mesh in parts for corners, faces in connected(*mesh)]
         if not found:
             raise ValueError("it holds no faces")
-        return [(place, corners, outwards(corners, faces, place)) for k, (name, corners, faces) in enumerate(found)
-                for place in (f"part {k}" + (f" ('{name}')" if name else ""),)]
+        solids = [(place, corners, outwards(corners, faces, place)) for k, (name, corners, faces) in enumerate(found)
+                  for place in (f"part {k}" + (f" ('{name}')" if name else ""),)]
+        concave = [f"{place}: {edge}" for place, *mesh in solids for edge in (concave_edge(*mesh),) if edge]
+        if concave:
+            more = f"; and {len(concave) - _NAMED} more" if len(concave) > _NAMED else ""
+            raise ValueError(f"{'; '.join(concave[:_NAMED])}{more}: a block must be convex; divide it into convex parts")
+        return solids
     except (ValueError, KeyError, IndexError, TypeError, StopIteration, RuntimeError) as error:
         raise ValueError(f"path = {path}: {error if isinstance(error, ValueError) else 'it is cut off, or not of its format'}") from None
 
@@ -214,7 +221,7 @@ def _at(corners, *numbers):
 
 
 def outwards(corners, faces, place):
-    """The faces of one part, counter-clockwise from outside; ValueError unless it is closed and convex."""
+    """The faces of one part, counter-clockwise from outside; ValueError unless it is closed."""
     sides = _sides(faces)
     for (a, b), those in sides.items():
         if len(those) > 1:
@@ -223,21 +230,22 @@ def outwards(corners, faces, place):
         if (b, a) not in sides:
             raise ValueError(f"{place}: one face only has the edge from {_at(corners, a, b)}: the surface must be closed")
     areas = np.array([_fan(corners, loop) for loop in faces])
-    middle, size = corners.mean(axis=0), np.ptp(corners, axis=0).max()
+    middle = corners.mean(axis=0)
     volume = sum((corners[loop[0]] - middle) @ area for loop, area in zip(faces, areas)) / 6
-    if volume < 0:
-        return outwards(corners, [loop[::-1] for loop in faces], place)
-    worst, where = _CONCAVE * size, None
+    return [loop[::-1] for loop in faces] if volume < 0 else faces
+
+
+def concave_edge(corners, faces):
+    """What is wrong with the edge of one part, closed and outwards, that is concave most; None: it is convex."""
+    sides, areas = _sides(faces), np.array([_fan(corners, loop) for loop in faces])
+    worst, where = _CONCAVE * np.ptp(corners, axis=0).max(), None
     for (a, b), (face,) in sides.items():
         length, (other,) = math.sqrt(areas[face] @ areas[face]), sides[b, a]
         bends_in = np.cross(areas[face], areas[other]) @ (corners[b] - corners[a]) < 0
         height = ((corners[faces[other]] - corners[a]) @ areas[face]).max() / length if bends_in and length else 0
         if height > worst:
             worst, where = height, (a, b)
-    if where:
-        raise ValueError(f"{place}: the edge from {_at(corners, *where)} is concave, a corner of one face beside it is {worst:.3g} m above the other: a block must be "
-                         "convex; divide it into convex parts")
-    return faces
+    return where and f"the edge from {_at(corners, *where)} is concave, a corner of one face beside it is {worst:.3g} m above the other"
 
 
 def write_obj(path, solids):

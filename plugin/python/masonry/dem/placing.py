@@ -7,6 +7,7 @@ from masonry import _core
 from masonry._given import finite_numbers, shown
 from masonry.dem.bodies import block_body, upper_face, world_shape
 from masonry.dem.checks import check_material, listed
+from masonry.dem.layouts import check_extent
 from yade import Body, O, Quaternion, Vector3, utils, wrapper
 
 # Share of the half size of a support by which a block's centre must be inside it: a centre above the edge is off, whatever the round-off.
@@ -15,8 +16,6 @@ _INSIDE = 1e-9
 _LEVEL = 1e-9
 # Height, m, and cosine, by which upper faces on which one structure stands may differ: far below what a contact feels, above round-off.
 _LEVEL_FACES = 1e-9
-# Largest extent of a convex block, m: stones beyond come from a wrong unit.
-_EXTENTS = 1e-3, 1e2
 
 
 def block_material(material):
@@ -51,13 +50,6 @@ def posed(body, center, orientation, resting):
 def append_boxes(centers, sizes, material, orientation, resting):
     """Ids of free boxes at those places of the world."""
     return O.bodies.append([posed(box_body(size, material), center, orientation, resting) for center, size in zip(centers, sizes)])
-
-
-def check_extent(points, name):
-    """ValueError that begins with `name` unless points (k, 3) span what a block may."""
-    extent = np.ptp(points, axis=0).max() if len(points) else 0.0
-    if np.isfinite(points).all() and not _EXTENTS[0] <= extent <= _EXTENTS[1]:
-        raise ValueError(f"{name}: extent = {extent:.4g}: must be from {_EXTENTS[0]:g} to {_EXTENTS[1]:g}, in m")
 
 
 def polyhedron(points, name, faces=None, in_own_axes=False):

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from masonry._given import finite_numbers, number_given, positive_given, shown, whole_given
 from masonry.dem.bonding import Bond
-from masonry.dem.layouts import positive_size
+from masonry.dem.layouts import block_size
 from masonry.dem.voussoirs import arch_joints, flat_arch_joints
 
 # A length fits courses when it is off by less than this share of a course; points of the plan coincide when they are this share of a block apart.
@@ -151,7 +151,7 @@ class Plan:
 def read_plan(plan, thickness, brick, storeys, openings, floors, gables, heights, lap, bonded, header_every):
     """The Plan; ValueError that names what is wrong, and where."""
     lines = _lines(plan)
-    sizes = {name: positive_size(f"brick of wall {name!r}", one) for name, one in _for_each(lines, "brick", brick).items()}
+    sizes = {name: block_size(f"brick of wall {name!r}", one) for name, one in _for_each(lines, "brick", brick).items()}
     height = next(iter(sizes.values()))[2]
     for name, size in sizes.items():
         if not math.isclose(size[2], height, rel_tol=FIT):

@@ -24,10 +24,6 @@ _BASE = 1e-6
 _TWO = "two finite numbers, in m"
 
 
-def _positive_size(name, size):
-    return Vector3(layouts.positive_size(name, size))
-
-
 def _axis(name):
     if name not in tuple(_AXES):
         raise ValueError(f"axis = {shown(name)}: must be 'x' or 'y'")
@@ -35,20 +31,20 @@ def _axis(name):
 
 
 def base(size, material, at=(0.0, 0.0)):
-    """A body that does not move by itself, with its top face at z = 0 and the middle of that face at the point `at`, (x, y) in m. size: full sizes (x, y, z), m.
+    """A body that does not move by itself, with its top face at z = 0 and the middle of that face at the point `at`, (x, y) in m. size: full sizes (x, y, z), m, from 1e-6 to 1e6.
     A motion engine (PulseTrainEngine, RecordMotionEngine) moves it. Returns its id."""
-    size, (x, y) = _positive_size("size", size), finite_numbers("at", at, 2, _TWO)
+    size, (x, y) = Vector3(layouts.positive_size("size", size)), finite_numbers("at", at, 2, _TWO)
     body = utils.box(Vector3(x, y, -size[2] / 2), size / 2, Quaternion.Identity, material=block_material(material), fixed=True)
     body.aspherical = True
     return O.bodies.append(body)
 
 
 def block(size, material, on=None, center=None, orientation=None, at=(0.0, 0.0)):
-    """A free block. size: full sizes (x, y, z), m. It stands on the body `on`, with its centre above the point `at`, (x, y) in m from the middle of its upper
+    """A free block. size: full sizes (x, y, z), m, the largest one from 1 mm to 100 m. It stands on the body `on`, with its centre above the point `at`, (x, y) in m from the middle of its upper
     face, or has its centre at `center` (m).
     orientation: a Quaternion; with `on`, a turn about z at most. dem.angle counts from that turn about z, not from the world's axes.
     Returns its id."""
-    size = _positive_size("size", size)
+    size = Vector3(layouts.block_size("size", size))
     if (on is None) == (center is None):
         raise ValueError(f"on = {on}, center = {center}: give one of the two")
     at = tuple(finite_numbers("at", at, 2, _TWO))

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from masonry._files import written
 from masonry._given import array_given, finite_numbers, is_whole, shown
-from masonry.dem.layouts import SIZES
+from masonry.dem.layouts import SIZES, check_extent
 
 _PLACE, _TURN, _QUATERNION = ("x", "y", "z", "size_x", "size_y", "size_z"), ("rotation_y", "rotation_z"), ("qw", "qx", "qy", "qz")
 COLUMNS = _PLACE + _TURN + ("material",) + _QUATERNION
@@ -172,6 +172,8 @@ def read_table(table):
     rows = [(_named(row, place), place) for row, place in zip(cells, places)]
     corners = [_corners(*row) for row in rows]
     numbers = np.array([[_number(row, place, c) if one is None or not c.startswith("size") else math.nan for c in _PLACE] for (row, place), one in zip(rows, corners)])
+    for place, size in zip(places, numbers[:, 3:]):
+        check_extent([(0, 0, 0), size], place)  # NaN passes: a convex block is checked where it is made
     quaternions = [_quaternion(*row) for row in rows]
     resting = [_resting(*row, quaternion) for row, quaternion in zip(rows, quaternions)]
     return Table(numbers[:, :3], numbers[:, 3:], np.array(quaternions), [_material(*row) for row in rows], places, corners, resting)

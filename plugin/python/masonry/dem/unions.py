@@ -5,7 +5,8 @@ from masonry._given import array_given, is_whole, shown
 from masonry._polyhedra import placed_pairs
 from masonry.dem.bodies import block_body, part_corners
 from masonry.dem.checks import check_material
-from masonry.dem.placing import block_material, check_extent, convex_body, one_body, polyhedron, union_polyhedron
+from masonry.dem.layouts import check_extent
+from masonry.dem.placing import block_material, convex_body, one_body, polyhedron, union_polyhedron
 from yade import O
 
 # Depth of an overlap, and width of a gap, relative to the extent of the union, up to which two parts touch; least area of what they share, relative to the smaller face.

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 from masonry._given import number_given, shown
-from masonry.dem.layouts import SIZES, whole
+from masonry.dem.layouts import SIZES, check_extent, whole
 
 SHAPES, MEASURED, BONDS = ("circular", "pointed"), ("intrados", "middle"), ("running", "stack")
 
@@ -87,6 +87,7 @@ def arch_joints(span, rise, thickness, n, shape="circular", measured="intrados")
     inner, found, crown = joints(span, rise, thickness, n, side)
     if not inner > 0:
         raise ValueError(f"thickness = {thickness}: must be below {2 * (inner + thickness / 2):g} m, where the intrados vanishes")
+    check_extent(np.concatenate(found[:2]), f"span = {span:g}, rise = {rise:g}, thickness = {thickness:g}, n = {n}: voussoirs")
     return found, crown if n % 2 else None
 
 
@@ -96,7 +97,9 @@ def flat_arch_joints(span, depth, n, below):
     x = span * (np.arange(n // 2 + 1) / n - 0.5)
     top = x * ((below + depth) / below)
     half = np.stack([np.stack([x, np.zeros_like(x)], axis=-1), np.stack([top, np.full_like(x, depth)], axis=-1)], axis=1)
-    return _mirrored(half, n)
+    joints = _mirrored(half, n)
+    check_extent(np.concatenate(joints[:2]), f"span = {span:g}, depth = {depth:g}, n = {n}: voussoirs")
+    return joints
 
 
 def springer_profiles(joints, below):
@@ -187,4 +190,5 @@ def dome_layout(radius, thickness, courses, per_course, oculus=0.0, half_angle=m
                         for r in (inner, outer)], axis=2) - [0, 0, radius * height[0]]
     blocks = [np.concatenate([corners[level, m] for level in (course, course + 1) for m in (k, (k + 1) % per_course)])
               for course in range(courses) for k in range(per_course)]
+    check_extent(blocks[0], f"radius = {radius:g}, thickness = {thickness:g}, courses = {courses}, per_course = {per_course}: stones")
     return blocks if oculus else [*blocks, corners[-1].reshape(-1, 3)]
