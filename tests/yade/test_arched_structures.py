@@ -14,12 +14,14 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "validation" / "con
 
 import arches  # noqa: E402
 import domes  # noqa: E402
+import rows  # noqa: E402
 import statics  # noqa: E402
 import structures  # noqa: E402
 
 
 @pytest.mark.parametrize("case", [*structures.IN_SECONDS, *arches.IN_SECONDS], ids=lambda case: case.__name__)
-def test_against_limit_analysis(case):
+def test_against_limit_analysis(case, monkeypatch):
+    monkeypatch.setattr(rows, "COMPLIANT", [])  # they take minutes
     found = list(case())
     for row in found:
         print(row)

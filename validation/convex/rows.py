@@ -77,25 +77,30 @@ def collapse(mode, direction="x", **options):
     return result.multiplier
 
 
-def compliant_collapse(direction, load="force", ramp=0.5, hold=1.5, share=5e-3, tolerance=1e-3):
-    """The same with compliant joints, by bisection: the pull grows smoothly for `ramp` s, or gravity turns, and a block that has then moved by `share` of the
-    least extent of any within `hold` s falls. dem.TiltTable knows rigid blocks alone."""
+def compliant_collapse(direction, load="force", **options):
+    """The same with compliant joints; gravity may also turn. dem.TiltTable knows rigid blocks alone."""
     pull = Vector3(1 if direction == "x" else -1, 0, 0)
 
-    def gravity(multiplier):
+    def set_pull(newton, multiplier):
         along = multiplier * pull - Vector3.UnitZ
-        return 9.81 * (along / along.norm() if load == "turned" else along)
+        newton.gravity = 9.81 * (along / along.norm() if load == "turned" else along)
 
+    return compliant_limit(set_pull, **options)
+
+
+def compliant_limit(set_load, ramp=0.5, hold=1.5, share=5e-3, tolerance=1e-3):
+    """Factor of a load at which the scene falls with compliant joints, by bisection: set_load(newton, factor) is called while the factor grows smoothly for
+    `ramp` s, and a block that has then moved by `share` of the least extent of any within `hold` s falls."""
     free = [body.id for body in O.bodies if body.dynamic]
     limit = share * min(np.ptp(peers.local_vertices(O.bodies[id]), axis=0).min() for id in free)
-    O.saveTmp("before the pull")
+    O.saveTmp("before the load")
 
-    def falls(multiplier):
-        O.loadTmp("before the pull")
+    def falls(factor):
+        O.loadTmp("before the load")
         begin, newton = [O.bodies[id].state.pos for id in free], start(COMPLIANT[0])
         steps = round(ramp / O.dt / 50)
         for k in range(1, steps + 1):
-            newton.gravity = gravity((1 - math.cos(math.pi * k / steps)) / 2 * multiplier)
+            set_load(newton, (1 - math.cos(math.pi * k / steps)) / 2 * factor)
             O.run(50, True)
         for _ in range(10):
             O.run(round(hold / O.dt / 10), True)

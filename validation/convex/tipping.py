@@ -99,7 +99,7 @@ def a22_every_direction():
                 shares.append(collapse(mode) / threshold(polygon, 1.0, -turn))
             return [max(shares, key=lambda share: abs(share - 1))]
 
-        made += rows("a22", worst, [(f"base, {name}: worst multiplier of 24 directions over that of statics", 1.0, (1e-3, 1e-3))], IN_SPACE + BULLET)
+        made += rows("a22", worst, [(f"base, {name}: worst multiplier of 24 directions over that of statics", 1.0, (1e-3, 1e-3, 2e-3))], IN_SPACE + BULLET)
     return made
 
 
