@@ -2,6 +2,7 @@
 #include "dynamics/wall/joint_work.hpp"
 #include <algorithm>
 #include <iterator>
+#include <set>
 #include <utility>
 
 namespace masonry::wall {
@@ -76,22 +77,53 @@ CappedStatus CappedSolve<K>::solve(const RigidSystem<K>& s, const AdmmProblem<K>
 template <class K>
 SpinRow<K>* CappedSolve<K>::takeWork(const RigidSystem<K>& s, const AdmmProblem<K>& problem, double residual, const AdmmResults<K>& results)
 {
+	if (rows.empty())
+		return nullptr;
 	const double missed = problem.step.instant ? residual / (2 * problem.step.speed) : 0; // work goes with the mean of the velocities
+	const std::vector<JointWork> works = workOfPairs(s, problem.contacts, results);
+	const std::vector<double> beside = gainsBeside(s, works);
 	SpinRow<K>* worst = nullptr;
 	double most = 0;
 	auto held = results.spins.begin();
 	for (size_t k = 0; k < rows.size(); ++k) {
 		SpinRow<K>& row = rows[k];
 		row.couple = row.held ? (held++)->couple : 0;
-		JointWork work = jointWork(s, problem.contacts, results, row.block(), row.face);
-		work.add(row.spent);
-		ranges[k].last = {row.held, row.held && work.isActive(missed), row.rate(results.velocity), row.couple, work};
-		if (ranges[k].last.makesEnergy && work.gain > most) {
+		row.work = jointWork(s, problem.contacts, results, works, row);
+		row.work.add(row.spent);
+		row.work.gain += beside[k];
+		ranges[k].last = {row.held, row.held && row.work.isActive(missed), row.rate(results.velocity), row.couple, row.work};
+		if (ranges[k].last.makesEnergy && row.work.gain > most) {
 			worst = &row;
-			most = work.gain;
+			most = row.work.gain;
 		}
 	}
 	return worst;
+}
+
+template <class K>
+std::vector<double> CappedSolve<K>::gainsBeside(const RigidSystem<K>& s, const std::vector<JointWork>& works) const
+{
+	std::vector<std::vector<int>> rowsAt(s.bodies.size());
+	std::vector<bool> hasRow(s.pairs.size(), false);
+	for (size_t k = 0; k < s.pairs.size(); ++k)
+		for (size_t r = 0; r < rows.size(); ++r)
+			if (isOfJoint(s.pairs[k], rows[r])) {
+				hasRow[k] = true;
+				for (const int body : {s.pairs[k].body1, s.pairs[k].body2})
+					if (!s.bodies[body].prescribed)
+						rowsAt[body].push_back(int(r));
+			}
+	std::vector<double> sums(rows.size(), 0);
+	for (size_t k = 0; k < s.pairs.size(); ++k) {
+		if (hasRow[k] || works[k].gain <= 0)
+			continue;
+		std::set<int> here;
+		for (const int body : {s.pairs[k].body1, s.pairs[k].body2})
+			here.insert(rowsAt[body].begin(), rowsAt[body].end());
+		for (const int r : here)
+			sums[r] += works[k].gain / here.size();
+	}
+	return sums;
 }
 
 template <class K>

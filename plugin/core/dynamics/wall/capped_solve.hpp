@@ -1,12 +1,12 @@
 #pragma once
 // A solve of the contact laws, of a step or of an instant, in which no joint makes energy by its row. A joint's gain is the work of its
 // couple and of the impulses at its points, on the mean of the relative velocities before and after (JointWork); what friction and impacts
-// take at other joints does not pay for it. Row and points of a step and of the instant after it are one impact, whose last part gives back
-// a little of what the first has taken: the balance is that of both.
+// take at other joints does not pay for it. Joints without a row land plastically, and yet gain where their blocks moved apart before the
+// impact pressed them together again: the rows at these blocks share that gain. Row and points of a step and of the instant after it are
+// one impact, whose last part gives back a little of what the first has taken: the balance is that of both.
 //
-// The row with the largest gain is left out, and the rest is solved again, until no joint makes energy:
-// a joint without its row lands with its natural restitution and gains nothing. Then these rows come back with the largest spins that make
-// no energy. While no other contact opens, closes or begins to slide, impulses are linear in the spin x, 0 at the natural one and 1 at that
+// The row with the largest gain is left out, and the rest is solved again, until no joint makes energy: a joint without its row lands with
+// its natural restitution. Then these rows come back with the largest spins that make no energy. While no other contact opens, closes or begins to slide, impulses are linear in the spin x, 0 at the natural one and 1 at that
 // which made energy, and the gain is
 //
 //     G(x) = G0 + (G1 - G0) x - D x (1 - x),        D = (c1 - c0)(e.w1 - e.w0)/2
@@ -34,6 +34,9 @@ public:
 private:
 	// Looks at the work of all rows after a solve with those that are held. Returns the one that makes most energy, or nullptr.
 	SpinRow<K>* takeWork(const RigidSystem<K>& system, const AdmmProblem<K>& problem, double residual, const AdmmResults<K>& results);
+
+	// What joints without a row gain beside each row, J, by the work of each pair.
+	std::vector<double> gainsBeside(const RigidSystem<K>& system, const std::vector<JointWork>& works) const;
 
 	// Gives capped rows the targets of the next trial. False: all of them have found theirs.
 	bool moveTargets(int trials);

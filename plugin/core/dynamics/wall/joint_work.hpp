@@ -1,11 +1,23 @@
 #pragma once
-// This is the work that a joint has done in a solve of the contact laws, of a step or of an instant.
+// This is the work that joints have done in a solve of the contact laws, of a step or of an instant.
 #include "dynamics/wall/admm_results.hpp"
 
 namespace masonry::wall {
 
-// Sums the work of the impulses at all points of the block's face, and of the couple of its row if it has one.
+// Whether the pair is a part of the joint that has the row.
 template <class K>
-JointWork jointWork(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmResults<K>& results, int block, int face);
+bool isOfJoint(const ContactPair<K>& pair, const SpinRow<K>& row)
+{
+	return (pair.body1 == row.block() && pair.face1 == row.face) || (pair.body2 == row.block() && pair.face2 == row.face);
+}
+
+// The work of the impulses at the points of each pair.
+template <class K>
+std::vector<JointWork> workOfPairs(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmResults<K>& results);
+
+// Sums the works of the pairs of the row's joint, and of its couple.
+template <class K>
+JointWork jointWork(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmResults<K>& results,
+                    const std::vector<JointWork>& pairs, const SpinRow<K>& row);
 
 } // namespace masonry::wall

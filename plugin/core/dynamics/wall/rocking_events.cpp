@@ -1,6 +1,5 @@
 #include "dynamics/wall/rocking_events.hpp"
 #include "dynamics/model/scales.hpp"
-#include "dynamics/wall/joint_work.hpp"
 #include "dynamics/wall/rocking_contact.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
@@ -279,7 +278,7 @@ void RockingEvents<K>::take(const RigidSystem<K>& s, const ContactSet<K>& c, con
 			continue;
 		for (const SpinRow<K>& row : results.spins)
 			if (row.block() == event.block && row.face == event.face && row.held)
-				event.spent = jointWork(s, c, results, event.block, event.face);
+				event.spent = row.work;
 		events.push_back(event);
 	}
 }

@@ -44,6 +44,7 @@ struct SpinRow {
 	int face {-1};             // of the block: the points of its joint
 	double couple {0};         // result: N m s
 	JointWork spent;           // of the same impact before this solve
+	JointWork work;            // result: with this solve, and with what joints beside gain (CappedSolve)
 	bool held {true};          // result: the last solve had it
 	bool capped {false};       // result: its target was reduced, or it was left out, since its joint would gain energy
 

@@ -188,7 +188,8 @@ TEST_CASE("a cap reaches no joint but its own, and a dense wall makes no energy"
 // The rows of a dense wall ask for spins that its supports can give: few joints would make energy, and an instant costs little beside its
 // steps. With the motion that supports on two blocks have before the impact, a joint is asked for up to 20 rad/s, a fifth of the landings
 // are capped, and the wall takes twelve times the iterations that it takes without a restitution. Bounds: a quarter of
-// those twelve times; 0.15 of the landings, of which 0.08 to 0.13 would make energy with converged instants.
+// those twelve times; 0.18 of the landings, of which 0.08 to 0.13 would make energy with converged instants, and 0.025 by what joints
+// beside them gain.
 TEST_CASE("a dense wall keeps most of its restitution at three times the iterations")
 {
 	Harmonic motion(1.0 * g, 2, 0.02);
@@ -210,7 +211,7 @@ TEST_CASE("a dense wall keeps most of its restitution at three times the iterati
 			}
 		}
 	CHECK(impacts > 300);
-	CHECK(capped < 0.15 * impacts);
+	CHECK(capped < 0.18 * impacts);
 	CHECK(iterations[1] < 3 * iterations[0]);
 	CHECK(failures < 0.01 * impacts);
 }
