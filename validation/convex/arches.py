@@ -65,13 +65,13 @@ def least_thickness(voussoirs, friction, right):
 def a14_least_thickness():
     for n in (7, 15, 27):
         right = statics.least_thickness(n, 5.0)
-        yield from rows("a14", least_thickness(n, 5.0, right), [(f"semicircle of {n}, no slip: least t/R", right, (0.01, 0.01, 0.02))])
+        yield from rows("a14", least_thickness(n, 5.0, right), [(f"semicircle of {n}, no slip: least t/R", right, (0.01, 0.01))])
 
 
 def a15_friction():
     for friction in (0.38, 0.34):
         right = statics.least_thickness(27, friction)
-        yield from rows("a15", least_thickness(27, friction, right), [(f"semicircle of 27, mu {friction}: least t/R", right, (0.01, 0.01, 0.02))])
+        yield from rows("a15", least_thickness(27, friction, right), [(f"semicircle of 27, mu {friction}: least t/R", right, (0.01, 0.01))])
 
 
 def a16_multiplier():
