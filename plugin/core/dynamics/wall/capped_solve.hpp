@@ -35,7 +35,7 @@ private:
 	// Looks at the work of all rows after a solve with those that are held. Returns the one that makes most energy, or nullptr.
 	SpinRow<K>* takeWork(const RigidSystem<K>& system, const AdmmProblem<K>& problem, double residual, const AdmmResults<K>& results);
 
-	// What joints without a row gain beside each row, J, by the work of each pair.
+	// Sums what joints without a row gain beside each row, J, by the work of each pair.
 	std::vector<double> gainsBeside(const RigidSystem<K>& system, const std::vector<JointWork>& works) const;
 
 	// Gives capped rows the targets of the next trial. False: all of them have found theirs.
