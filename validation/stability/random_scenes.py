@@ -1,7 +1,7 @@
 """Random scenes, one seed each, judged by invariants alone; appends one JSON line a scene. Run by `run --long`: of every ten scenes that are thrown one
 more is pressed by bodies with prescribed motion, one has convex blocks, one has unions, one has bricks with mortar (random_mortar.py), and one is a building
 (plans.py). STABILITY_MODEL=compliant (or another name of measures.MODELS): all seeds with that model (buildings are always walls in space).
-STABILITY_KIND=pressed (or thrown, convex, union, mortar, building): these scenes alone."""
+STABILITY_KIND=pressed (or thrown, convex, union, mortar, building): these scenes alone. STABILITY_FIRST: their first seed."""
 
 import contextlib
 import io
@@ -336,9 +336,10 @@ def main(path, scenes, part, parts):
     if os.path.exists(path):
         with open(path) as file:
             done = {(row.get("kind", "thrown"), row["seed"]) for row in map(json.loads, file)}
+    first = int(os.environ.get("STABILITY_FIRST", 0))
     kinds = [os.environ["STABILITY_KIND"]] if "STABILITY_KIND" in os.environ else list(KINDS)
     counts = {kind: scenes // 10 if kind != "thrown" and len(kinds) > 1 else scenes for kind in kinds}
-    for kind, seed in ((kind, seed) for kind in kinds for seed in range(part, counts[kind], parts)):
+    for kind, seed in ((kind, seed) for kind in kinds for seed in range(first + part, counts[kind], parts)):
         if (kind, seed) in done:
             continue
         row = random_mortar.run(seed) if kind == "mortar" else run(seed, kind)

@@ -7,7 +7,7 @@ path, scenes = sys.argv[1], int(sys.argv[2])
 with open(path) as file:
     rows = [{"kind": "thrown", **r} for r in map(json.loads, file) if r["seed"] < scenes]
 invariants = ("energy", "depth", "flight", "cone", "off", "work", "damage", "strength", "mirror", "reaction", "sink", "bits")
-print(f"\nSeeds 0 to {scenes - 1}.\n\n| scenes of | model | scenes | {' | '.join(invariants)} | broken without a word | CPU s |\n" + "| --- " * (len(invariants) + 5) + "|")
+print(f"\nSeeds {min((r['seed'] for r in rows), default=0)} to {scenes - 1}.\n\n| scenes of | model | scenes | {' | '.join(invariants)} | broken without a word | CPU s |\n" + "| --- " * (len(invariants) + 5) + "|")
 for kind, model in dict.fromkeys((r["kind"], r.get("model", "refused")) for r in sorted(rows, key=lambda r: (r["kind"] != "thrown", r["seed"]))):
     mine = [r for r in rows if (r["kind"], r.get("model", "refused")) == (kind, model)]
     silent = [r["seed"] for r in mine if r["broken"] and not r["said"]]

@@ -6,8 +6,8 @@
 // one impact, whose last part gives back a little of what the first has taken: the balance is that of both.
 //
 // The row with the largest gain is left out, and the rest is solved again, until no joint makes energy: a joint without its row lands with
-// its natural restitution. Then these rows come back with the largest spins that make no energy. While no other contact opens, closes or begins to slide, impulses are linear in the spin x, 0 at the natural one and 1 at that
-// which made energy, and the gain is
+// its natural restitution. Then these rows come back with the largest spins that make no energy. While no other contact opens, closes or
+// begins to slide, impulses are linear in the spin x, 0 at the natural one and 1 at that which made energy, and the gain is
 //
 //     G(x) = G0 + (G1 - G0) x - D x (1 - x),        D = (c1 - c0)(e.w1 - e.w0)/2
 //

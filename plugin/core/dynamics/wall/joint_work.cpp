@@ -18,7 +18,8 @@ std::vector<JointWork> workOfPairs(const RigidSystem<K>& s, const ContactSet<K>&
 						       rateOf(group.point[k], n, i, 1, &v[packs<K> * group.body1[i]]);
 					};
 					const auto& acted = results.points[g][k];
-					works[lanes.pair[i]].add(n == 0 ? acted.actedN[i] : component(acted.actedT, n - 1, i), rate(before), rate(results.velocity));
+					works[lanes.pair[i]].add(n == 0 ? acted.actedN[i] : component(acted.actedT, n - 1, i), rate(before),
+					                         rate(results.velocity));
 				}
 	}
 	return works;
