@@ -34,7 +34,7 @@ void ContactLayout::make(std::vector<Pair> pairs, const std::vector<int>& lanes,
 	std::vector<std::vector<int>> pairsOf(interface + 1);
 	std::vector<char> atSeam(none + 1, 0);
 	for (const int c : numbers_) {
-		const auto [a, b] = pairs_[c];
+		const int a = pairs_[c].body1, b = pairs_[c].body2;
 		const bool within = !free_[a] || !free_[b] || partOf[a] == partOf[b];
 		pairsOf[within ? partOf[free_[a] ? a : b] : interface].push_back(c);
 		if (!within)
@@ -73,7 +73,7 @@ std::vector<int> ContactLayout::divide() const
 		count *= 2;
 	std::vector<int> partOf;
 	const auto atSeam = [&](int c) {
-		const auto [a, b] = pairs_[c];
+		const int a = pairs_[c].body1, b = pairs_[c].body2;
 		return free_[a] && free_[b] && partOf[a] != partOf[b];
 	};
 	for (;; count /= 2) {
@@ -96,7 +96,7 @@ void ContactLayout::addGroups(const std::vector<int>& pairsOfPart)
 	for (const int c : pairsOfPart)
 		for (int number = 0; number < int(slots_[c].size()); ++number) {
 			const auto isTaken = [&](const std::vector<char>& by) {
-				const auto [a, b] = pairs_[c];
+				const int a = pairs_[c].body1, b = pairs_[c].body2;
 				return (free_[a] && by[a]) || (free_[b] && by[b]);
 			};
 			const size_t k = std::find_if_not(used.begin(), used.end(), isTaken) - used.begin();
@@ -105,7 +105,7 @@ void ContactLayout::addGroups(const std::vector<int>& pairsOfPart)
 				used.emplace_back(free_.size(), 0);
 			}
 			colours[k].push_back({c, number});
-			used[k][pairs_[c][0]] = used[k][pairs_[c][1]] = 1;
+			used[k][pairs_[c].body1] = used[k][pairs_[c].body2] = 1;
 		}
 	const int none = int(free_.size());
 	for (const std::vector<Lane>& lanes : colours)
@@ -122,8 +122,8 @@ void ContactLayout::addGroups(const std::vector<int>& pairsOfPart)
 			const int i = group.count++;
 			group.pair[i] = pair;
 			group.number[i] = number;
-			group.body1[i] = pairs_[pair][0];
-			group.body2[i] = pairs_[pair][1];
+			group.body1[i] = pairs_[pair].body1;
+			group.body2[i] = pairs_[pair].body2;
 			slots_[pair][number] = {int(groups_.size()) - 1, i};
 		}
 }

@@ -37,7 +37,14 @@ using Slots = boost::container::small_vector<Slot, 2>; // the lanes of a pair; i
 
 class ContactLayout {
 public:
-	using Pair = std::array<int, 2>; // bodies
+	struct Pair { // two bodies, by a convex part of each
+		int body1, body2, part1 {0}, part2 {0};
+
+		bool operator==(const Pair& other) const
+		{
+			return body1 == other.body1 && body2 == other.body2 && part1 == other.part1 && part2 == other.part2;
+		}
+	};
 
 	ContactLayout(Team& team, int packs) : team(&team), packs(packs) {} // packs of a body
 

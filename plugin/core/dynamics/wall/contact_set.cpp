@@ -23,11 +23,11 @@ std::vector<char> freeBodies(const RigidSystem<K>& s)
 }
 
 template <class K>
-std::vector<ContactLayout::Pair> bodiesOfPairs(const RigidSystem<K>& s)
+std::vector<ContactLayout::Pair> layoutPairs(const RigidSystem<K>& s)
 {
 	std::vector<ContactLayout::Pair> result;
 	for (const ContactPair<K>& pair : s.pairs)
-		result.push_back({pair.body1, pair.body2});
+		result.push_back({pair.body1, pair.body2, pair.part1, pair.part2});
 	return result;
 }
 
@@ -52,7 +52,7 @@ bool ContactSet<K>::samePairs(const RigidSystem<K>& s)
 {
 	if (layout_.parts().empty() || s.pairs.size() != layout_.pairs().size() || s.bodies.size() != layout_.free().size())
 		return false;
-	if (!list.isUpToDate(s.list) && bodiesOfPairs(s) != layout_.pairs())
+	if (!list.isUpToDate(s.list) && !(layoutPairs(s) == layout_.pairs()))
 		return false;
 	list.follow(s.list);
 	return true;
@@ -76,7 +76,7 @@ void ContactSet<K>::layOut(const RigidSystem<K>& s, const std::vector<int>& lane
 {
 	list.follow(s.list);
 	length_ = scale::length(s);
-	layout_.make(bodiesOfPairs(s), lanes, freeBodies(s), levelsOf(s));
+	layout_.make(layoutPairs(s), lanes, freeBodies(s), levelsOf(s));
 	points_.make();
 }
 
@@ -84,7 +84,7 @@ void ContactSet<K>::layOut(const RigidSystem<K>& s, const std::vector<int>& lane
 template <class K>
 bool ContactSet<K>::renumber(const RigidSystem<K>& s)
 {
-	if (!layout_.renumber(bodiesOfPairs(s), lanesOf(s, false), levelsOf(s)))
+	if (!layout_.renumber(layoutPairs(s), lanesOf(s, false), levelsOf(s)))
 		return false;
 	list.follow(s.list);
 	length_ = scale::length(s);

@@ -11,6 +11,8 @@ namespace {
 
 using Pair = ContactLayout::Pair;
 
+std::array<int, 2> bodiesOf(const Pair& pair) { return {pair.body1, pair.body2}; }
+
 // A wall on a base, body 0: each block stands on two of the course below it, and beside its neighbour. Some pairs take two lanes.
 struct Wall {
 	std::vector<Pair> pairs;
@@ -56,7 +58,7 @@ TEST_CASE("each lane of a pair is in one place, and lanes of a group share no fr
 			CHECK(wall.layout.slots(pair)[group.number[i]].group == g);
 			CHECK(wall.layout.slots(pair)[group.number[i]].lane == i);
 			CHECK(wall.pairs[pair] == Pair {group.body1[i], group.body2[i]});
-			for (const int b : wall.pairs[pair])
+			for (const int b : bodiesOf(wall.pairs[pair]))
 				CHECK((!wall.free[b] || bodies.insert(b).second));
 		}
 		for (int i = group.count; i < width; ++i) {
@@ -93,7 +95,7 @@ TEST_CASE("parts share no free body, and each pack is a member of one part")
 	for (int p = 0; p < interface; ++p)
 		for (int g = parts[p].begin; g < parts[p].end; ++g)
 			for (int i = 0; i < wall.layout.groups()[g].count; ++i)
-				for (const int b : wall.pairs[wall.layout.groups()[g].pair[i]]) {
+				for (const int b : bodiesOf(wall.pairs[wall.layout.groups()[g].pair[i]])) {
 					if (!wall.free[b])
 						continue;
 					CHECK((seenIn[b] == -1 || seenIn[b] == p));
@@ -103,7 +105,7 @@ TEST_CASE("parts share no free body, and each pack is a member of one part")
 				}
 	for (int g = parts[interface].begin; g < parts[interface].end; ++g)
 		for (int i = 0; i < wall.layout.groups()[g].count; ++i)
-			for (const int b : wall.pairs[wall.layout.groups()[g].pair[i]])
+			for (const int b : bodiesOf(wall.pairs[wall.layout.groups()[g].pair[i]]))
 				CHECK(partOf[2 * b] == interface);
 }
 
@@ -148,4 +150,13 @@ TEST_CASE("pairs that only get other numbers keep their lanes")
 	std::swap(pairs[7], pairs[8]);
 	CHECK_FALSE(wall.layout.renumber(pairs, lanes, wall.levels));
 	CHECK(wall.layout.groups()[0].pair[0] == before[0].pair[0] + (before[0].pair[0] >= 5));
+}
+
+TEST_CASE("pairs of other parts of the same bodies are other pairs")
+{
+	Wall wall(2, 3);
+	std::vector<Pair> pairs = wall.pairs;
+	REQUIRE(wall.layout.renumber(pairs, wall.lanes, wall.levels));
+	pairs[0].part2 = 1;
+	CHECK_FALSE(wall.layout.renumber(pairs, wall.lanes, wall.levels));
 }
