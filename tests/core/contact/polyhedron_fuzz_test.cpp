@@ -258,7 +258,9 @@ TEST_CASE("Faces that touch keep all corners of their overlap", "[fuzz]")
 		const Quaternion turn =
 		    Quaternion(Eigen::AngleAxisd(random.even(-M_PI, M_PI), normal)) *
 		    Quaternion::FromTwoVectors(pair.pose1.orientation.conjugate() * Vector3::UnitX(), Vector3::UnitX()).conjugate();
-		const Quaternion facing = Quaternion::FromTwoVectors(turn * face2.normal, -normal) * turn;
+		Quaternion facing = turn;
+		for (int k = 0; k < 2; ++k) // normals that look nearly the same way leave errors far above round-off the first time
+			facing = (Quaternion::FromTwoVectors(facing * face2.normal, -normal) * facing).normalized();
 		const auto middle = [](const ConvexPolyhedron& shape, const ConvexPolyhedron::Face& face) {
 			Vector3 sum = Vector3::Zero();
 			for (const int vertex : face.loop)
@@ -267,7 +269,7 @@ TEST_CASE("Faces that touch keep all corners of their overlap", "[fuzz]")
 		};
 		const Vector3 side = normal.unitOrthogonal();
 		const Vector3 shift = random.even(-.3, .3) * side + random.even(-.3, .3) * normal.cross(side);
-		pair.pose2.orientation = facing.normalized();
+		pair.pose2.orientation = facing;
 		pair.pose2.position = pair.pose1.toGlobal(middle(pair.shape1, face1)) + shift - pair.pose2.orientation * middle(pair.shape2, face2);
 		const auto flat = [&](const ConvexPolyhedron& shape, const Pose& pose, const ConvexPolyhedron::Face& face) {
 			std::vector<Vector2> corners;
