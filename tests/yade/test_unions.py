@@ -167,6 +167,28 @@ def test_a_block_slides_over_a_seam(model, method):
 
 
 @pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("sunk", (0, 1e-7, 1e-5))
+def test_a_wedge_stops_at_a_step(sunk, model, method):
+    """Its toe slides along a slab that is one body with the step before it, with 0.5 m/s on friction that would carry it 0.13 m. It stops at the step, 0.05 m away, however
+    it has sunk into the slab at first."""
+    material = stone(0, noSlip=False, frictionAngle=math.atan(0.1))
+    below = dem.union([cuboid((-1, 0.4), (-0.3, 0), (-0.5, 0.5)), cuboid((0, 0.4), (0, 0.4), (-0.5, 0.5))], material)
+    O.bodies[below].dynamic = False
+    section = ((-0.65, 0), (-0.05, 0), (-0.15, 0.3), (-0.55, 0.3))
+    wedge = dem.convex([(x, y, z - sunk) for x, z in section for y in (-0.3, 0.3)], material)
+    O.bodies[wedge].state.vel = Vector3(0.5, 0, 0)
+    move(method=method, model=model)
+    farthest = -1
+    for _ in range(count(0.5)):
+        O.step()
+        toe = dem.geometry(wedge).vertices[:, 0].max()
+        farthest = max(farthest, toe)
+    assert -1e-6 < farthest < 1e-5 and toe > -5e-3
+    assert O.bodies[wedge].state.vel.norm() < 1e-6
+
+
+@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("mirror", (False, True))
 @pytest.mark.parametrize("side", (-1, 1))
 def test_an_l_tips_at_its_critical_angle(side, mirror, method):

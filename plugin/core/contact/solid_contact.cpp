@@ -2,6 +2,7 @@
 #include "tolerances.hpp"
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 namespace masonry {
 
@@ -32,10 +33,10 @@ bool isInside(const Solid<Convex>& solid, int edge, const Vector& point, const V
 {
 	const EdgeOfSolid<Vector> own = edgeAt(solid, edge, point);
 	for (int k = 0; k < 2; ++k) {
-		if (!solid.isCovered(own.faces[k], point))
+		if (!solid.isCovered(own.faces[k], own.point))
 			continue;
 		const Vector& normal = solid.face(own.faces[1 - k]).normal;
-		return solid.isCovered(own.faces[1 - k], point) || !(normal.dot(outward) > 0) ||
+		return solid.isCovered(own.faces[1 - k], own.point) || !(normal.dot(outward) > 0) ||
 		       ((normal - outward).norm() > tolerance::contact::leans && solid.goesBeyond(own.point, outward));
 	}
 	return false;
@@ -43,6 +44,8 @@ bool isInside(const Solid<Convex>& solid, int edge, const Vector& point, const V
 
 Vector2 toLocal(const PlanePose& pose, const Vector2& point) { return pose.toLocal(point); }
 Vector3 toLocal(const Pose& pose, const Vector3& point) { return pose.toLocal(point); }
+Vector2 turned(const PlanePose& pose, const Vector2& direction) { return pose.rotate(direction); }
+Vector3 turned(const Pose& pose, const Vector3& direction) { return pose.orientation * direction; }
 Vector2 turnBack(const PlanePose& pose, const Vector2& direction) { return pose.rotateBack(direction); }
 Vector3 turnBack(const Pose& pose, const Vector3& direction) { return pose.orientation.conjugate() * direction; }
 
@@ -91,6 +94,65 @@ int faceAtSeam(const PartPair<K>& pair, const Feature& feature)
 	return best;
 }
 
+// Whether a part has a face in the plane of this one that looks the other way. `near`: m.
+template <class Convex, class Face>
+bool bears(const Convex& part, const Face& foot, double near)
+{
+	return std::any_of(part.faces().begin(), part.faces().end(), [&](const auto& face) {
+		return (face.normal + foot.normal).norm() <= tolerance::shape::plane && std::abs(face.offset + foot.offset) <= near;
+	});
+}
+
+// The point nearest to another one on the lines between these.
+template <class Vector>
+Vector nearestOf(const std::vector<Vector>& points, const Vector& to)
+{
+	Vector nearest = points[0];
+	for (const Vector& a : points)
+		for (const Vector& b : points) {
+			const Vector along = b - a;
+			const double square = along.squaredNorm(), share = square > 0 ? std::clamp((to - a).dot(along) / square, 0., 1.) : 0;
+			if (const Vector place = a + share * along; (place - to).squaredNorm() < (nearest - to).squaredNorm())
+				nearest = place;
+		}
+	return nearest;
+}
+
+// A body beside a part that stands on another one, and at the height of its foot, within tolerance::contact::sunk.
+template <class K>
+struct AtFoot {
+	double depth {0};                           // m, of the body below the foot; negative: above it
+	typename K::Vector out {K::Vector::Zero()}; // unit, lifts the body; zero: it is not at the foot
+};
+// `own`: the part that stands; `part`: of the other body.
+template <class K>
+AtFoot<K> atFoot(const Solid<typename K::Shape>& solid, const typename K::Pose& pose, int own, const Solid<typename K::Shape>& other,
+                 const typename K::Pose& otherPose, int part)
+{
+	using Vector = typename K::Vector;
+	const double near = tolerance::contact::slack * solid.thickness(), most = tolerance::contact::sunk * solid.thickness();
+	const Vector centre = toLocal(pose, otherPose.position);
+	for (const auto& foot : solid.part(own).faces()) {
+		const Vector down = turned(pose, foot.normal), normal = turnBack(otherPose, down);
+		double deepest = -std::numeric_limits<double>::infinity();
+		for (const Vector& vertex : other.part(part).vertices())
+			deepest = std::max(deepest, normal.dot(vertex));
+		const double depth = foot.normal.dot(centre) - foot.offset + deepest;
+		if (std::abs(depth) > most)
+			continue;
+		std::vector<Vector> toe;
+		for (const Vector& vertex : other.part(part).vertices())
+			if (normal.dot(vertex) > deepest - near)
+				toe.push_back(toLocal(pose, otherPose.toGlobal(vertex)));
+		const Vector place = nearestOf(toe, solid.part(own).inside());
+		for (int k = 0; k < solid.size(); ++k)
+			if (k != own && bears(solid.part(k), foot, tolerance::shape::plane * solid.radius()) &&
+			    outside(solid.part(k), place) <= near + std::max(0., -depth))
+				return {depth, -down};
+	}
+	return {};
+}
+
 // The numbers of the solids for those of the parts.
 template <class K>
 Feature numbered(const PartPair<K>& pair, const Feature& feature)
@@ -106,12 +168,13 @@ Feature numbered(const PartPair<K>& pair, const Feature& feature)
 	}
 }
 
-// Leaves out the points of which `hidden` is true, and their second normals.
-template <class K, class Hidden>
-void dropPoints(FoundPoints<K>& found, Hidden hidden)
+// Leaves out the hidden points and their second normals. Returns how many points there were.
+template <class K>
+int dropHidden(const PartPair<K>& pair, FoundPoints<K>& found)
 {
+	int dropped = 0;
 	for (int i = found.size() - 1; i >= 0; --i) {
-		if (!hidden(found.features[i]))
+		if (!isHidden(pair, found.features[i]))
 			continue;
 		if (i >= found.places) {
 			found.dropSecondNormal(i);
@@ -124,7 +187,55 @@ void dropPoints(FoundPoints<K>& found, Hidden hidden)
 			corner -= corner > i ? 1 : 0;
 		found.features.erase(found.features.begin() + i);
 		--found.places;
+		++dropped;
 	}
+	return dropped;
+}
+
+// The points of two parts, with the second body elsewhere, by the numbers of the parts.
+template <class K>
+FoundPoints<K> search(const PartPair<K>& pair, const typename K::Pose& pose2, bool secondNormals, typename K::Memory& memory)
+{
+	const auto &part1 = pair.solid1.part(pair.part1), &part2 = pair.solid2.part(pair.part2);
+	FoundPoints<K> found;
+	if (!K::findPoints(part1, pair.pose1, part2, pose2, std::numeric_limits<double>::infinity(), memory, found))
+		found.features.clear();
+	if (secondNormals)
+		K::addSecondNormals(part1, pair.pose1, part2, pose2, found);
+	return found;
+}
+
+// The same by the numbers of the solids, without the hidden ones: where the body is lifted off a part on which the other part stands, by
+// the least that leaves fewest points hidden.
+template <class K>
+FoundPoints<K> searchAtFeet(const PartPair<K>& pair, bool secondNormals, typename K::Memory& memory)
+{
+	const AtFoot<K> foot1 = atFoot<K>(pair.solid1, pair.pose1, pair.part1, pair.solid2, pair.pose2, pair.part2),
+	                foot2 = atFoot<K>(pair.solid2, pair.pose2, pair.part2, pair.solid1, pair.pose1, pair.part1);
+	const bool isAtFoot = !foot1.out.isZero() || !foot2.out.isZero();
+	const typename K::Memory before = memory;
+	FoundPoints<K> best;
+	int fewest = -1;
+	for (const double share : {2 * tolerance::contact::slack, tolerance::contact::vertexReach, tolerance::contact::sunk}) {
+		typename K::Pose pose2 = pair.pose2;
+		pose2.position += std::max(0., foot1.depth + share * pair.solid1.thickness()) * foot1.out -
+		                  std::max(0., foot2.depth + share * pair.solid2.thickness()) * foot2.out;
+		typename K::Memory now = before;
+		FoundPoints<K> found = search(pair, pose2, secondNormals, now);
+		if (!secondNormals)
+			found.beginSecondNormals();
+		for (Feature& feature : found.features)
+			feature = numbered(pair, feature);
+		const int hidden = dropHidden(pair, found);
+		if (fewest < 0 || hidden < fewest) {
+			fewest = hidden;
+			best = found;
+			memory = now;
+		}
+		if (hidden == 0 || !isAtFoot)
+			break;
+	}
+	return best;
 }
 
 } // namespace
@@ -132,19 +243,9 @@ void dropPoints(FoundPoints<K>& found, Hidden hidden)
 template <class K>
 FoundPoints<K> findPoints(const PartPair<K>& pair, bool secondNormals, typename K::Memory& memory)
 {
-	const auto &part1 = pair.solid1.part(pair.part1), &part2 = pair.solid2.part(pair.part2);
-	FoundPoints<K> found;
-	if (!K::findPoints(part1, pair.pose1, part2, pair.pose2, std::numeric_limits<double>::infinity(), memory, found))
-		found.features.clear();
-	if (secondNormals)
-		K::addSecondNormals(part1, pair.pose1, part2, pair.pose2, found);
 	if (pair.solid1.size() == 1 && pair.solid2.size() == 1)
-		return found;
-	if (!secondNormals)
-		found.beginSecondNormals();
-	for (Feature& feature : found.features)
-		feature = numbered(pair, feature);
-	dropPoints(found, [&](const Feature& feature) { return isHidden(pair, feature); });
+		return search(pair, pair.pose2, secondNormals, memory);
+	FoundPoints<K> found = searchAtFeet(pair, secondNormals, memory);
 	for (int i = 0; i < found.places; ++i)
 		if (const int face = faceAtSeam(pair, found.features[i]); face >= 0)
 			(found.features[i].vertexBody() == 1 ? found.face1 : found.face2) = face;

@@ -28,16 +28,6 @@ void directionsIn(const ConvexPolyhedron::Face& face, Found found)
 	}
 }
 
-// How far a point is outside a convex part, m; negative: inside.
-template <class Convex, class Vector>
-double outside(const Convex& part, const Vector& point)
-{
-	double most = -std::numeric_limits<double>::infinity();
-	for (const auto& face : part.faces())
-		most = std::max(most, face.normal.dot(point) - face.offset);
-	return most;
-}
-
 } // namespace
 
 template <class Convex>

@@ -8,6 +8,8 @@
 //
 // A face can be covered by another part, wholly or in places: no other body can touch it there (`isCovered`).
 #include "shape/convex_polyhedron.hpp"
+#include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace masonry {
@@ -74,6 +76,16 @@ private:
 	double leastHalfWidth {0}, farthest {0};
 	Vector least, most;
 };
+
+// How far a point is outside a convex part, m; negative: inside.
+template <class Convex, class Vector>
+double outside(const Convex& part, const Vector& point)
+{
+	double most = -std::numeric_limits<double>::infinity();
+	for (const auto& face : part.faces())
+		most = std::max(most, face.normal.dot(point) - face.offset);
+	return most;
+}
 
 // Whether two solids have the same parts, number by number and bit by bit.
 template <class Convex>

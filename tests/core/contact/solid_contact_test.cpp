@@ -183,3 +183,61 @@ TEST_CASE("In the plane a corner on a seam has the normal of the plane alone", "
 			CHECK(touching >= 1);
 		}
 }
+
+// A slab with a step on it, whose upright side is at x = 0, and a wedge whose toe comes to the step: the side of the step has to hold the
+// toe though that has sunk into the slab, or gone into the step. In the search of the step alone the toe is then below its foot, or the
+// foot is in the face of the wedge.
+TEST_CASE("The toe of a wedge on a slab meets the step before it, though it has sunk", "[solid]")
+{
+	constexpr double thickness = 0.2;
+	// Points with the normal of the step's side and this gap.
+	const auto count = [](const auto& found, const auto& solid1, const auto& pose1, const auto& solid2, const auto& pose2, double side,
+	                      double gap) {
+		return std::count_if(found.features.begin(), found.features.begin() + found.places, [&](const Feature& feature) {
+			const auto at = frameOf(feature, solid1, pose1, solid2, pose2);
+			return std::abs(at.axes(0, 0) - side) < 1e-9 && std::abs(at.gap - gap) < 1e-9;
+		});
+	};
+	for (const double sunk : {-1e-3, -1e-5, 0., 1e-9, 1e-7, 1e-6, 1e-5, 1e-3})
+		for (const double gap : {0.1, 1e-2, 1e-3, 1e-5, 0., -1e-5, -1e-3})
+			for (const double lean : {0.01, 0.1, 0.5, 1., 3.}) { // how far the wedge's face goes back, relative to its height
+				CAPTURE(sunk, gap, lean);
+				const std::vector<Vector2> section {{-0.6, 0}, {0, 0}, {-0.3 * lean, 0.3}, {-0.6 - 0.3 * lean, 0.3}};
+				const auto hull = [](const std::vector<Vector2>& points) {
+					Vector2 centre;
+					const ConvexPolygon polygon = ConvexPolygon::hull(points, &centre);
+					return polygon.moved(centre);
+				};
+				const Solid<ConvexPolygon> ground(
+				    {hull({{-2, -0.4}, {2, -0.4}, {-2, 0}, {2, 0}}), hull({{0, 0}, {0.4, 0}, {0, 0.4}, {0.4, 0.4}})}),
+				    wedge(hull(section));
+				for (const double height : {1e-2, -1e-2}) { // of the wedge in the search before, relative to the thickness
+					PlanePose fixed, pose, before;
+					pose.position = {-gap, -sunk * thickness};
+					before.position = {-gap, height * thickness};
+					PlaneMemory memory, swapped;
+					findPoints<Plane>({ground, fixed, 1, wedge, before, 0}, true, memory);
+					const auto found = findPoints<Plane>({ground, fixed, 1, wedge, pose, 0}, true, memory);
+					CHECK(count(found, ground, fixed, wedge, pose, -1, gap) == 1);
+					findPoints<Plane>({wedge, before, 0, ground, fixed, 1}, true, swapped);
+					const auto other = findPoints<Plane>({wedge, pose, 0, ground, fixed, 1}, true, swapped);
+					CHECK(count(other, wedge, pose, ground, fixed, 1, gap) == 1);
+				}
+
+				const Solid<ConvexPolyhedron> floor({cuboid({-2, -2, -0.4}, {2, 2, 0}), cuboid({0, -1, 0}, {0.4, 1, 0.4})});
+				const Pose still, place {{-gap, 0, -sunk * thickness}, Quaternion::Identity()};
+				for (const double half : {0.5, 1.5, 0.}) { // of the toe's width: narrower than the step, wider, a tip
+					std::vector<Vector3> corners;
+					for (const Vector2& corner : section)
+						for (const double y : {-1., 1.})
+							corners.emplace_back(corner.x(), y * (half > 0 ? half : corner.isZero() ? 0 : 0.3), corner.y());
+					const Solid<ConvexPolyhedron> block(ConvexPolyhedron::hull(corners));
+					PatchFeature memory, swapped;
+					CAPTURE(half);
+					const auto found = findPoints<Space>({floor, still, 1, block, place, 0}, true, memory);
+					CHECK(count(found, floor, still, block, place, -1, gap) == (half > 0 ? 2 : 1));
+					const auto other = findPoints<Space>({block, place, 0, floor, still, 1}, true, swapped);
+					CHECK(count(other, block, place, floor, still, 1, gap) == (half > 0 ? 2 : 1));
+				}
+			}
+}
