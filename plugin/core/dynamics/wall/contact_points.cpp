@@ -58,7 +58,10 @@ void ContactPoints<K>::takePair(const RigidSystem<K>& s, int c)
 		const auto [group, lane] = layout.slots(c)[k / lanePoints<K>];
 		FeatureLanes<K>& to = features_[group][k % lanePoints<K>];
 		to.present[lane] = k < pair.size() ? -1 : 0;
-		setFeature(to, lane, featureOf(pair, k), shape1, shape2);
+		if (k < pair.size())
+			setFeature(to, lane, pair.points[k].feature, shape1, shape2);
+		else
+			setWitness(to, lane, (k - pair.size()) % witnesses, shape1, shape2);
 		unknown_[group] &= ~(1 << lane);
 	}
 }
@@ -74,9 +77,11 @@ template <class K>
 void ContactPoints<K>::countPoints(const RigidSystem<K>& s, int g)
 {
 	const LaneGroup& lanes = layout.groups()[g];
-	int most = 1; // a pair without points still shows how far it moves
-	for (int i = 0; i < lanes.count; ++i)
-		most = std::max(most, pointsOf(s, lanes, i));
+	int most = 0;
+	for (int i = 0; i < lanes.count; ++i) {
+		const int points = pointsOf(s, lanes, i);
+		most = std::max(most, points <= witnesses ? points + witnesses : points);
+	}
 	groups_[g].setCount(most);
 }
 
@@ -104,8 +109,8 @@ void ContactPoints<K>::measureCorners(const RigidSystem<K>& s, int g, int lane)
 {
 	const LaneGroup& lanes = layout.groups()[g];
 	const ContactPair<K>& pair = s.pairs[lanes.pair[lane]];
-	for (int k = 0; k < groups_[g].count; ++k)
-		measureCorner(features_[g][k], lane, featureOf(pair, lanePoints<K> * lanes.number[lane] + k), *s.bodies[pair.body1].shape,
+	for (int k = 0; k < pointsOf(s, lanes, lane); ++k)
+		measureCorner(features_[g][k], lane, pair.points[lanePoints<K> * lanes.number[lane] + k].feature, *s.bodies[pair.body1].shape,
 		              *s.bodies[pair.body2].shape);
 }
 

@@ -139,11 +139,4 @@ int pointsOf(const RigidSystem<K>& system, const LaneGroup& lanes, int lane)
 	return std::clamp(system.pairs[lanes.pair[lane]].size() - lanePoints<K> * lanes.number[lane], 0, lanePoints<K>);
 }
 
-// A feature of the pair by its number. Beyond its points any vertex will tell how far the pair moves.
-template <class K>
-Feature featureOf(const ContactPair<K>& pair, int point)
-{
-	return point < pair.size() ? pair.points[point].feature : Feature::ofVertex(1, 0, 0);
-}
-
 } // namespace masonry::wall

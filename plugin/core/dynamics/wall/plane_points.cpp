@@ -1,5 +1,6 @@
 #include "dynamics/wall/point_passes.hpp"
 #include "tolerances.hpp"
+#include <algorithm>
 
 namespace masonry::wall {
 
@@ -113,6 +114,16 @@ void setFeature(FeatureLanes<Plane>& to, int lane, const Feature& feature, const
 	to.normal.x[lane] = geometry.normal.x(), to.normal.y[lane] = geometry.normal.y();
 	to.faceDistance[lane] = geometry.distance;
 	to.faceBegin[lane] = reach.low, to.faceEnd[lane] = reach.high;
+}
+
+void setWitness(FeatureLanes<Plane>& to, int lane, int axis, const Solid<ConvexPolygon>& shape1, const Solid<ConvexPolygon>& shape2)
+{
+	const Vector2 place = beside * std::min(shape1.radius(), shape2.radius()) * Vector2::Unit(axis);
+	to.vertexOn1[lane] = shape1.radius() < shape2.radius() ? -1 : 0;
+	to.vertex.x[lane] = place.x(), to.vertex.y[lane] = place.y();
+	to.normal.x[lane] = 0, to.normal.y[lane] = 1;
+	to.faceDistance[lane] = 0;
+	to.faceBegin[lane] = -farAway, to.faceEnd[lane] = farAway;
 }
 
 } // namespace masonry::wall

@@ -32,6 +32,14 @@ void setFeature(FeatureLanes<Plane>& to, int lane, const Feature& feature, const
 void setFeature(FeatureLanes<Space>& to, int lane, const Feature& feature, const Solid<ConvexPolyhedron>& shape1,
                 const Solid<ConvexPolyhedron>& shape2);
 
+// Lanes without a point have a place beside the smaller of the two bodies, on its axis of this number, which shows how far the pair moves:
+// a pair that turns about its only point moves no other. A line through two such places does not meet the body, so that no turn about its
+// points leaves both where they are.
+constexpr int witnesses = 2;
+constexpr double beside = 1.5; // of the body's radius; above sqrt(2)
+void setWitness(FeatureLanes<Plane>& to, int lane, int axis, const Solid<ConvexPolygon>& shape1, const Solid<ConvexPolygon>& shape2);
+void setWitness(FeatureLanes<Space>& to, int lane, int axis, const Solid<ConvexPolyhedron>& shape1, const Solid<ConvexPolyhedron>& shape2);
+
 // How near the vertex of a lane's point is to the corners of its face. A face of a polygon ends at its corners.
 inline void measureCorner(FeatureLanes<Plane>&, int, const Feature&, const Solid<ConvexPolygon>&, const Solid<ConvexPolygon>&) {}
 void measureCorner(FeatureLanes<Space>& of, int lane, const Feature& feature, const Solid<ConvexPolyhedron>& shape1,

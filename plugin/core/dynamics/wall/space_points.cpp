@@ -193,6 +193,18 @@ void setFeature(FeatureLanes<Space>& to, int lane, const Feature& feature, const
 	setLane(to.gripAt, lane, Vector3::Zero());
 }
 
+void setWitness(FeatureLanes<Space>& to, int lane, int axis, const Solid<ConvexPolyhedron>& shape1, const Solid<ConvexPolyhedron>& shape2)
+{
+	to.crossing[lane] = 0;
+	to.vertexOn1[lane] = shape1.radius() < shape2.radius() ? -1 : 0;
+	setLane(to.vertex, lane, Vector3(beside * std::min(shape1.radius(), shape2.radius()) * Vector3::Unit(axis)));
+	setLane(to.normal, lane, Vector3::UnitZ());
+	setLane(to.tangent, lane, Vector3::UnitX());
+	to.faceDistance[lane] = 0;
+	to.fromCorner[lane] = farAway;
+	setLane(to.gripAt, lane, Vector3::Zero());
+}
+
 void measureCorner(FeatureLanes<Space>& of, int lane, const Feature& feature, const Solid<ConvexPolyhedron>& shape1,
                    const Solid<ConvexPolyhedron>& shape2)
 {
