@@ -1,6 +1,7 @@
 """Convex blocks of a scene: places, mass, faces, round trips, and what is refused."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -227,6 +228,8 @@ def test_bad_blocks_are_refused():
     refuses(lambda: dem.convex(CUBE, stone(), orientation=(1, 0, 0, 0)), "orientation = (1, 0, 0, 0): must be a Quaternion of length 1")
     refuses(lambda: dem.convex(CUBE, "stone"), "material = 'stone': must be a BlockMat")
     refuses(lambda: dem.arch(2, 0.4, 0.2, 7, 0.5, stone(), on=base), "the blocks would stand on edges, because the lowest joints are not level")
+    for at in ("ab", None, 5, ("a", 0)):
+        refuses(lambda: dem.arch(2, 1, 0.2, 7, 0.5, stone(), on=base, at=at), "at = ", "must be two finite numbers, in m")
     refuses(lambda: dem.arch(12, 6, 0.2, 7, 0.5, stone(), on=base), "2 blocks of the bottom course have their centres off it")
     refuses(lambda: dem.arch(2, 1, 0.2, 7, 0.5, stone(), on=(0, 0)), "on = (0, 0): their upper faces must be level and beside each other")
     refuses(lambda: dem.arch(2, 1, 0.2, 7, 0.5, stone(), on=(0, 1, 2)), "on = (0, 1, 2): must be the id of one body, or the ids of two")
@@ -316,6 +319,17 @@ def test_vaults_and_domes_fit_together():
     assert dem.check_blocks() == [] and len(dem.structures()) == 4
 
 
+def test_seeds_that_are_drawn_are_accepted():
+    """A wall of rubble without a seed prints one that makes it again."""
+    for _ in range(5):
+        O.reset()
+        seed = int(re.search(r"seed=(\d+)", said_by(dem.rubble_wall, 1.0, 0.5, 0.4, 0.4, stone()))[1])
+        corners = [dem.geometry(b.id).vertices for b in O.bodies]
+        O.reset()
+        again = dem.rubble_wall(1.0, 0.5, 0.4, 0.4, stone(), seed=seed)
+        assert all(np.array_equal(one, dem.geometry(id).vertices) for one, id in zip(corners, again, strict=True))
+
+
 def test_tilted_and_overturned():
     """The right trapezoid of the tables: critical angles .336675 and .502843 rad about its two edges; its lower edge stays where it was."""
     base = dem.base((9, 9, 0.2), stone())
@@ -329,6 +343,9 @@ def test_tilted_and_overturned():
         dem.tilt(id, -2 * angle)
         assert dem.angle(id) == pytest.approx(-angle) and bottom(id) == pytest.approx(0, abs=1e-14)
         O.bodies.erase(id)
+    # Its principal axes are turned in its section, so that no edge of its base is along the other one.
+    id = dem.prism(TRAPEZOID, 1.0, stone(), axis="y", on=base)
+    refuses(lambda: dem.tilt(id, 0.03, "x"), "its own x axis, a principal axis of inertia, is inclined by", "it must be level")
 
 
 def test_outline_of_a_mechanism():

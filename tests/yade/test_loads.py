@@ -50,6 +50,16 @@ def test_mass_is_shared_by_area():
     assert np.allclose(dem.add_mass([small, large], 300), np.array(before) + [100, 200], rtol=1e-14)
     assert np.allclose(O.bodies[small].state.inertia, inertia * (1 + 100 / before[0]), rtol=1e-14)
     assert dem.loads.added_mass() == pytest.approx({small: 100, large: 200}, rel=1e-12)
+    assert [dem.geometry(id).volume for id in (small, large)] == pytest.approx([0.08, 0.08], rel=1e-14)
+
+
+def test_volume_of_loaded_convex_blocks():
+    """A prism over a triangle and an L of two boxes have the volumes of their sections, whatever their mass."""
+    prism = dem.prism([(0, 0), (0.8, 0), (0.3, 0.7)], 0.5, stone(), axis="y", center=(0, 0, 3))
+    boxes = [[(x, y, z) for x in xs for y in (0, 0.4) for z in zs] for xs, zs in (((2, 3), (0, 0.2)), ((2, 2.3), (0.2, 1)))]
+    union = dem.union(boxes, stone())
+    dem.add_mass([prism, union], 700)
+    assert [dem.geometry(id).volume for id in (prism, union)] == pytest.approx([0.28 * 0.5, (0.2 + 0.24) * 0.4], rel=1e-13)
 
 
 def test_base_shear_over_the_weight_with_added_mass():

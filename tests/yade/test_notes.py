@@ -138,6 +138,20 @@ def test_forces_that_a_recorder_leaves_out():
         assert len(found) == said
 
 
+def test_a_motion_that_leaves_bodies_behind():
+    """A prescribed pier on a base that moves stays where it is, and with it what it carries; a base that carries nothing shakes nothing."""
+    base, block, stone = scene()
+    pier = dem.block((0.5, 0.5, 1), stone, center=(1.2, 0, 0.5))
+    O.bodies[pier].dynamic = False
+    dem.block((0.5, 0.5, 1), stone, on=pier)
+    far = dem.base((1, 1, 0.2), stone, at=(9, 0))
+    record = masonry.Record(0.01, 2 * np.sin(2 * np.pi * np.arange(0, 1.005, 0.01)))
+    for ids, said in (([base], f"a motion moves body {base} and not body {pier}, which touches it"), ([far], f"no free block stands on what a motion moves (body {far})"),
+                      ([base, pier], None), ([base, pier, far], None)):
+        *found, _ = lines(dem.record_motion(record, ids=ids))  # the last line: the choice
+        assert found == [] if said is None else len(found) == 1 and said in found[0], (ids, found)
+
+
 def test_warnings_are_words_alone(capfd):
     """Without names of functions and files."""
     base = dem.base((4, 2, 0.2), stone := dem.BlockMat(density=2000, frictionAngle=0.6))

@@ -11,7 +11,7 @@ import numpy as np
 from masonry._given import array_given, finite_numbers, is_whole, shown
 from masonry.dem import solids, voussoirs
 from masonry.dem.abutments import between, reshape, skewbacks
-from masonry.dem.bodies import block_body, upper_face, world_shape
+from masonry.dem.bodies import block_body, upper_face, volume_of, world_shape
 from masonry.dem.layouts import whole
 from masonry.dem.meshes import read_meshes
 from masonry.dem.placing import check_support, convex_bodies, convex_body, moved, one_body, polyhedron, top_of, turned
@@ -21,6 +21,8 @@ from yade import Body, O, Quaternion, Vector3
 # Height above the lowest corner, relative to the extent, up to which a corner stands on the ground.
 _LEVEL = 1e-9
 _AT = "two finite numbers, in m"
+# Seeds that are drawn where none is given.
+_SEEDS = 1_000_000
 
 
 class Geometry(NamedTuple):
@@ -40,7 +42,7 @@ def geometry(id):
     body = block_body(id)
     vertices, faces = world_shape(body)
     turn = np.array(body.state.ori.toRotationMatrix()).reshape(3, 3)
-    return Geometry(vertices, faces, body.state.mass / body.mat.density, np.array(tuple(body.state.pos)),
+    return Geometry(vertices, faces, volume_of(body), np.array(tuple(body.state.pos)),
                     turn @ np.diag(tuple(body.state.inertia)) @ turn.T, getattr(body.shape, "isBox", True))
 
 
@@ -147,7 +149,7 @@ def _structure(blocks, material, on, at=(0.0, 0.0)):
             place = axes.conjugate() * (foot + turn * Vector3(middle[0], middle[1], 0) - face)
             check_support([(place[0], place[1])], end, (0.0, 0.0), extent)
     else:
-        check_support(bottom, on, at, extent)
+        check_support(bottom, on, finite_numbers("at", at, 2, _AT), extent)
         foot, turn = top_of(on, at)
     bodies = convex_bodies(blocks, material)
     for body in bodies:
@@ -246,7 +248,7 @@ def rubble_wall(length, height, thickness, size, material, on=None, seed=None, j
     joint         width by which stones are apart, m; 0: they touch
     least_edge    corners that are nearer than this to another are left out, m; without it: size/20
     """
-    seed = secrets.randbelow(2**31) if seed is None else whole("seed", seed, 0)
+    seed = secrets.randbelow(_SEEDS) if seed is None else whole("seed", seed, 0)
     ids = _structure(rubble_layout(length, height, thickness, size, seed, joint, least_edge), material, on, at)
     print(f"masonry.dem: rubble_wall(..., seed={seed}): {len(ids)} stones")
     return ids

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from masonry._given import is_whole, number_given, shown
-from masonry.dem.bodies import block_body, blocks, own_parts, world_shape
+from masonry.dem.bodies import block_body, blocks, volume_of, world_shape
 from yade import O, Vector3, wrapper
 
 # Engines of dead loads have labels that begin so: dem.engines() and TiltTable know them by it, also in a scene that was loaded.
@@ -30,17 +30,9 @@ def _given(ids, name, value, unit):
     return bodies
 
 
-def _volume(body):
-    if isinstance(body.shape, wrapper.Box):
-        return 8 * float(np.prod(tuple(body.shape.extents)))
-    from scipy.spatial import ConvexHull
-
-    return sum(ConvexHull(np.array(part)).volume for part in own_parts(body.shape))
-
-
 def _shares(bodies):
     """Shares of the blocks, in proportion to their areas in plan."""
-    areas = np.array([_volume(body) / np.ptp(world_shape(body)[0][:, 2]) for body in bodies])
+    areas = np.array([volume_of(body) / np.ptp(world_shape(body)[0][:, 2]) for body in bodies])
     return areas / areas.sum()
 
 
@@ -62,7 +54,7 @@ def add_mass(ids, mass):
 
 def added_mass():
     """{id: kg that dem.add_mass has added to the block}, from what its mass is more than density times volume."""
-    more = {body.id: body.state.mass - body.mat.density * _volume(body) for body in blocks() if body.dynamic}
+    more = {body.id: body.state.mass - body.mat.density * volume_of(body) for body in blocks() if body.dynamic}
     return {id: mass for id, mass in more.items() if mass > _ROUND_OFF * O.bodies[id].state.mass}
 
 

@@ -127,8 +127,9 @@ def say_what_looks_odd(blocks, motions, gravity, others, tied=()):
     if floating and gravity > 0:
         say(f"no chain of supports joins these blocks to a prescribed body, they will fall: {listed(floating)}")
     motions = [motion for motion in motions if not motion.dead]
+    carried = supports
     supports = [(below, body) for below, body in supports if isinstance(body.shape, wrapper.Box)]  # the others have no width and height
-    for text in (_untouched(others), _motion_left_out(motions), _pivots_that_slip(supports), _pulses_that_slip(supports, motions), *map(_end_of, _records(motions))):
+    for text in (_untouched(others), _motion_left_out(motions), *_left_behind(motions, carried), _pivots_that_slip(supports), _pulses_that_slip(supports, motions), *map(_end_of, _records(motions))):
         if text:
             say(text)
     for density in sorted({b.mat.density for b in blocks}):
@@ -190,6 +191,18 @@ def _motion_left_out(motions):
     if motions or not present:
         return None
     return f"no motion: the {type(present[-1]).__name__} of body {listed(present[-1].ids)} does nothing unless it is given, dem.engines(motion=...)"
+
+
+def _left_behind(motions, supports):
+    """Sentences on what a motion does not move, though it seems to be meant to: prescribed bodies on those that move, and all blocks. supports: (body below, body on it)."""
+    moved = {id for motion in motions if not moves_platens(motion) for id in motion.ids}
+    touching = {(one.id, other) for pair in supports for one, other in (pair, pair[::-1]) if one.id in moved and other.id not in moved}
+    fixed = sorted((other.id, id) for id, other in touching if not other.dynamic)
+    for body, below in fixed[:1]:
+        yield (f"a motion moves body {below} and not body {body}, which touches it and is prescribed: it stays where it is. Add to the ids of the motion what moves along: "
+               f"{listed(sorted({id for id, _ in fixed}))}")
+    if moved and not any(other.dynamic for _, other in touching):
+        yield f"no free block stands on what a motion moves (body {listed(sorted(moved))})"
 
 
 def _end_of(record):

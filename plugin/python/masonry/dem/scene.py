@@ -18,6 +18,8 @@ from yade import O, Quaternion, Vector3, utils, wrapper
 _AXES = {"x": 0, "y": 1}
 # Upward part of a block's own x or y axis up to which it may lean about it.
 _LEVEL = 0.7
+# The same of a convex block where it stands: round-off of its principal axes.
+_LEVEL_AT_REST = 1e-6
 # Height above the lowest corner, relative to the size, up to which a corner of a convex block belongs to its base.
 _BASE = 1e-6
 
@@ -216,6 +218,10 @@ def tilt(id, angle, axis="y"):
     state, lean = body.state, _angle(body.state, row)
     if abs((state.ori * Vector3.Unit(row))[2]) > _LEVEL:
         raise ValueError(f"id = {id}: that block does not stand: its own {axis} axis, about which it is to lean, must be level")
+    inclined = (state.refOri * Vector3.Unit(row))[2]
+    if not isinstance(body.shape, wrapper.Box) and abs(inclined) > _LEVEL_AT_REST:
+        raise ValueError(f"id = {id}: its own {axis} axis, a principal axis of inertia, is inclined by {math.degrees(math.asin(inclined)):.3g} deg where it stands: it must be level, for the block "
+                         "to lean on an edge; turn it by O.bodies[id].state.ori and .pos")
     back = min(max(angle, min(-lean, 0)), max(-lean, 0))  # about the edge on which it leans
     for turn, side in ((back, math.copysign(1, lean)), (angle - back, math.copysign(1, angle))):
         if turn:
