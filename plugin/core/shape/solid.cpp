@@ -28,6 +28,26 @@ void directionsIn(const ConvexPolyhedron::Face& face, Found found)
 	}
 }
 
+// Whether a plane through the origin has all these unit vectors on one side, at more than tolerance::contact::leans. The point of their
+// hull that is nearest to the origin is sought from segment to segment (Gilbert, SIAM Journal on Control 4, 1966).
+template <class Vector>
+bool liesBesideOrigin(const std::vector<Vector>& directions)
+{
+	constexpr int most = 100; // segments
+	Vector nearest = directions[0];
+	for (int k = 0; k < most; ++k) {
+		const Vector& lowest = *std::min_element(directions.begin(), directions.end(),
+		                                         [&](const Vector& a, const Vector& b) { return nearest.dot(a) < nearest.dot(b); });
+		if (nearest.dot(lowest) > tolerance::contact::leans * nearest.norm())
+			return true;
+		const Vector along = lowest - nearest;
+		nearest -= std::max(-1., nearest.dot(along) / along.squaredNorm()) * along;
+		if (nearest.norm() < tolerance::contact::leans)
+			return false;
+	}
+	return false;
+}
+
 } // namespace
 
 template <class Convex>
@@ -125,7 +145,8 @@ bool Solid<Convex>::goesBeyond(const Vector& point, const Vector& outward, int e
 	return false;
 }
 
-// In a notch the solid goes on beside faces that can be touched all the same.
+// A corner of the whole is never buried: it lands where the solid has turned, though another corner may be lower now. In a notch the solid
+// goes on beside faces that can be touched all the same.
 template <class Convex>
 bool Solid<Convex>::isBuried(int number, const Vector& outward) const
 {
@@ -135,6 +156,14 @@ bool Solid<Convex>::isBuried(int number, const Vector& outward) const
 	const Vector& vertex = all[own].vertices()[number - firsts[own].vertex];
 	const double near = 4 * tolerance::contact::vertexReach * leastHalfWidth;
 	if (!goesBeyond(vertex, outward, own))
+		return false;
+	std::vector<Vector> inward;
+	for (int k = 0; k < size(); ++k)
+		if (outside(all[k], vertex) <= near)
+			for (const Vector& other : all[k].vertices())
+				if (const Vector way = other - vertex; way.norm() > near)
+					inward.push_back(way.normalized());
+	if (liesBesideOrigin(inward))
 		return false;
 	for (int k = 0; k < size(); ++k)
 		for (int f = 0; f < int(all[k].faces().size()) && outside(all[k], vertex) <= near; ++f) {

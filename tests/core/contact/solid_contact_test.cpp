@@ -184,6 +184,48 @@ TEST_CASE("In the plane a corner on a seam has the normal of the plane alone", "
 		}
 }
 
+TEST_CASE("A cuboid that is cut along its diagonal has the corners of the whole over a plane, however it leans", "[solid]")
+{
+	// The cut goes through two corners below and two above: each belongs to both parts, and one part goes on below it when the cuboid
+	// leans.
+	const Vector3 half(0.3, 0.4, 0.5);
+	std::vector<Vector3> left, right;
+	for (const double z : {-1., 1.})
+		for (const auto& [x, y] : {std::pair(-1., -1.), {1., 1.}, {-1., 1.}, {1., -1.}}) {
+			const Vector3 corner = half.cwiseProduct(Vector3(x, y, z));
+			if (x <= y)
+				left.push_back(corner);
+			if (x >= y)
+				right.push_back(corner);
+		}
+	const Solid<ConvexPolyhedron> whole(ConvexPolyhedron::box(half)), cut({ConvexPolyhedron::hull(left), ConvexPolyhedron::hull(right)}),
+	    ground(cuboid({-3, -3, -1}, {3, 3, 0}));
+	for (const double lean : {0., 1e-4, 1e-2, 0.1, 0.3})
+		for (const double direction : {0.1, 1.2, 2.5, 4., 5.5}) {
+			CAPTURE(lean, direction);
+			const Quaternion turn(Eigen::AngleAxisd(lean, Vector3(std::cos(direction), std::sin(direction), 0)));
+			double lowest = 0;
+			for (const Vector3& vertex : whole.vertices())
+				lowest = std::min(lowest, (turn * vertex).z());
+			const Pose fixed, pose {{0, 0, -lowest}, turn};
+			const auto places = [&](const Solid<ConvexPolyhedron>& block, int part) {
+				PatchFeature memory;
+				std::vector<Vector3> result;
+				const auto found = findPoints<Space>({ground, fixed, 0, block, pose, part}, false, memory);
+				for (const Feature& feature : found.features)
+					result.push_back(frameOf(feature, ground, fixed, block, pose).position);
+				return result;
+			};
+			std::vector<Vector3> parts = places(cut, 0);
+			for (const Vector3& place : places(cut, 1))
+				parts.push_back(place);
+			const std::vector<Vector3> corners = places(whole, 0);
+			CHECK(corners.size() == 4);
+			for (const Vector3& corner : corners)
+				CHECK(std::any_of(parts.begin(), parts.end(), [&](const Vector3& place) { return (place - corner).norm() < 1e-12; }));
+		}
+}
+
 // A slab with a step on it, whose upright side is at x = 0, and a wedge whose toe comes to the step: the side of the step has to hold the
 // toe though that has sunk into the slab, or gone into the step. In the search of the step alone the toe is then below its foot, or the
 // foot is in the face of the wedge.
