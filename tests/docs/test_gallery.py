@@ -98,13 +98,13 @@ def test_scripts_make_the_pictures_that_the_pages_show(name, tmp_path):
     run = subprocess.run([sys.executable, pictures.__file__, "--output", tmp_path, name], capture_output=True, text=True, stdin=subprocess.DEVNULL)
     assert run.returncode == 0, run.stdout[-3000:] + run.stderr[-3000:]
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(made)
-    # Compiled by another compiler a collapse is the same up to round-off, and then its blocks fall elsewhere: with GCC 14 the film is alike to 0.79, with
-    # GCC 16 the energies to 0.64.
-    least = OTHERS if name == "collapse" else 0.8
+    # Compiled by another compiler, or on another processor, a collapse is the same up to round-off, and then its blocks fall elsewhere: with GCC 14 the film is alike to 0.79, with
+    # GCC 16 the energies to 0.64. The film is as high as the blocks need it: 254 pixels on one processor and 242 on another.
+    least, sizes = (OTHERS, 0.1) if name == "collapse" else (0.8, 0.02)
     for picture in made:
         assert re.search(rf"made .*/{re.escape(picture)} \(", run.stdout)
         kept = ROOT / "docs/gallery" / picture
-        assert np.allclose(pictures.look(tmp_path / picture)[:2], pictures.look(kept)[:2], rtol=0.02)
+        assert np.allclose(pictures.look(tmp_path / picture)[:2], pictures.look(kept)[:2], rtol=sizes)
         assert alike(tmp_path / picture, kept) > least, picture
     check = globals().get(name)
     if check:

@@ -10,8 +10,8 @@
 // (Solid::goesBeyond), the edge is one of the solid, between two faces of different parts.
 //
 // Where a part stands on another one, as a step stands on a slab, a body on the slab that has sunk into it by next to nothing is below the
-// foot of the step, and one whose toe has gone into the step has the foot in its own face. The search of the step then takes the foot, which
-// is no corner or edge of the solid, and misses the toe. So it sees the body lifted off the slab; only the features come from there.
+// foot of the step, and one whose toe has gone into the step has the foot in its own face. The search of the step then takes the foot,
+// which is no corner or edge of the solid, and misses the toe. So it sees the body lifted off the slab; only the features come from there.
 #include "contact/point_geometry.hpp"
 #include "shape/solid.hpp"
 
