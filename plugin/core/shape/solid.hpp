@@ -50,7 +50,8 @@ public:
 	// `except` is left out; -1: none.
 	bool goesBeyond(const Vector& point, const Vector& outward, int except = -1) const;
 	// Whether a body that touches a vertex of a part from the direction `outward` (unit) would be in another part: the vertex is no corner
-	// of the solid in that direction. Directions of faces that are not covered there are always free.
+	// of the solid in that direction. Directions of faces that are not covered there are always free, and so are all directions at a corner
+	// of the whole.
 	bool isBuried(int vertex, const Vector& outward) const;
 
 	double thickness() const { return leastHalfWidth; }          // m, the least of the parts
