@@ -168,7 +168,8 @@ constexpr double slack = 1e-7;
 // changes no feature. Larger: lever arms are wrong by as much.
 constexpr double vertexReach = 1e-4;
 // Depth below the foot of a part that stands on another one, and height above it, relative to the thinnest part, within which a body is
-// looked for off the part below. Smaller: what has sunk deeper goes into the foot; larger: nothing, but time.
+// looked for off the part below. Smaller: what has sunk deeper goes into the foot; larger: its features may be those of a body that is
+// lifted by as much.
 constexpr double sunk = 1e-2;
 // Overlaps narrower than this are no contact. Smaller: blocks that meet corner to corner push each other sideways;
 // larger: a block sliding off an edge falls that much too early.

@@ -206,7 +206,7 @@ FoundPoints<K> search(const PartPair<K>& pair, const typename K::Pose& pose2, bo
 }
 
 // The same by the numbers of the solids, without the hidden ones: where the body is lifted off a part on which the other part stands, by
-// the least that leaves fewest points hidden.
+// the least that leaves fewest points hidden and loses none.
 template <class K>
 FoundPoints<K> searchAtFeet(const PartPair<K>& pair, bool secondNormals, typename K::Memory& memory)
 {
@@ -227,7 +227,7 @@ FoundPoints<K> searchAtFeet(const PartPair<K>& pair, bool secondNormals, typenam
 		for (Feature& feature : found.features)
 			feature = numbered(pair, feature);
 		const int hidden = dropHidden(pair, found);
-		if (fewest < 0 || hidden < fewest) {
+		if (fewest < 0 || (hidden < fewest && found.places >= best.places)) {
 			fewest = hidden;
 			best = found;
 			memory = now;

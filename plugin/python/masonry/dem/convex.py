@@ -21,7 +21,7 @@ from yade import Body, O, Quaternion, Vector3
 # Height above the lowest corner, relative to the extent, up to which a corner stands on the ground.
 _LEVEL = 1e-9
 _AT = "two finite numbers, in m"
-# Seeds that are drawn where none is given.
+# Seeds that are drawn where none is given: whole() accepts them all.
 _SEEDS = 1_000_000
 
 

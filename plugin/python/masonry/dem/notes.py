@@ -198,7 +198,8 @@ def _left_behind(motions, supports):
     moved = {id for motion in motions if not moves_platens(motion) for id in motion.ids}
     touching = {(one.id, other) for pair in supports for one, other in (pair, pair[::-1]) if one.id in moved and other.id not in moved}
     fixed = sorted((other.id, id) for id, other in touching if not other.dynamic)
-    for body, below in fixed[:1]:
+    if fixed:
+        body, below = fixed[0]
         yield (f"a motion moves body {below} and not body {body}, which touches it and is prescribed: it stays where it is. Add to the ids of the motion what moves along: "
                f"{listed(sorted({id for id, _ in fixed}))}")
     if moved and not any(other.dynamic for _, other in touching):
