@@ -10,6 +10,9 @@ using Vector3 = Eigen::Vector3d;
 using Matrix3 = Eigen::Matrix3d;
 using Quaternion = Eigen::Quaterniond;
 
+// The component of a x b along the normal of the plane.
+inline double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
 // Position of the centre and orientation (body axes -> global axes) of a rigid body.
 struct Pose {
 	Vector3 position {Vector3::Zero()};

@@ -5,6 +5,7 @@
 #include "ConvexBlock.hpp"
 #include "MoreauJeanIntegrator.hpp"
 #include "RockingJointEngine.hpp"
+#include "bonded_state.hpp"
 #include "joint_forces.hpp"
 #include "sentence.hpp"
 
@@ -142,7 +143,7 @@ void WallRecorder::addTies()
 /// Joints with mortar: all of the scene, since crackDissip is that of all. Other engines that know fewer of them leave them as they were.
 void WallRecorder::addDamages()
 {
-	constexpr size_t row = 13, damage = 4, cracked = 11; // columns of RockingJointEngine.bondedState
+	constexpr size_t damage = 4, cracked = 11; // columns of RockingJointEngine.bondedState
 	const auto take = [this](const auto* joints) {
 		if (!joints || joints->dead || joints->bondedIds.size() < bondIds.size())
 			return;
@@ -154,7 +155,7 @@ void WallRecorder::addDamages()
 		take(dynamic_cast<const MoreauJeanIntegrator*>(engine.get()));
 	}
 	bondCounts.push_back(int(bondIds.size() / 2));
-	for (size_t start = 0; start < bondStates.size(); start += row)
+	for (size_t start = 0; start < bondStates.size(); start += bondedRow)
 		damages.insert(damages.end(), bondStates.begin() + start + damage, bondStates.begin() + start + cracked);
 }
 

@@ -1,5 +1,6 @@
 // Mortar of a scene with method='wall': which joints it bonds, what is left of it, and its forces.
 
+#include "bonded_state.hpp"
 #include "rigid_scene.hpp"
 
 #include <algorithm>
@@ -12,16 +13,12 @@ namespace yade {
 namespace {
 
 constexpr Real infinite = std::numeric_limits<Real>::infinity();
-constexpr size_t stateSize = 13;  // numbers of a row of bondedState
-constexpr Real firstCrack = 0.02; // largest damage from which a joint counts as cracked
 constexpr Real closeBy = 1e-4; // gap up to which blocks touch, and length of a joint from which on it is one, relative to their thickness
-
-std::string pairOf(int id1, int id2) { return sentence("The joint of bodies ", id1, " and ", id2); }
 
 /// Rigid joints have no stiffness. `friction`: of the joint.
 masonry::MortarLaw checked(masonry::MortarLaw law, Real friction, int id1, int id2)
 {
-	const std::string joint = pairOf(id1, id2);
+	const std::string joint = jointName(id1, id2);
 	if (std::isnan(law.friction))
 		law.friction = friction;
 	law.normalStiffness = law.shearStiffness = infinite;
@@ -48,7 +45,7 @@ masonry::MortarLaw lawOf(const JointMat& mortar, Real friction, int id1, int id2
 void checkRigid(const JointMat& mortar, int id1, int id2)
 {
 	if (!std::isnan(mortar.flexuralStrength))
-		throw std::invalid_argument(sentence(pairOf(id1, id2), " has mortar with flexuralStrength = ", mortar.flexuralStrength,
+		throw std::invalid_argument(sentence(jointName(id1, id2), " has mortar with flexuralStrength = ", mortar.flexuralStrength,
 		                                     " Pa: a rigid joint bears three times the moment at which its edge reaches its strength: "
 		                                     "give tensileStrength = ",
 		                                     mortar.flexuralStrength / 3, " with method='wall'."));
@@ -140,7 +137,7 @@ void RigidScene<K>::bond()
 		if (!(joint.area > closeBy * thickness * thickness))
 			continue;
 		if (!made.emplace(std::pair(joint.body1, joint.body2), joint).second)
-			throw std::invalid_argument(pairOf(id1, id2) +
+			throw std::invalid_argument(jointName(id1, id2) +
 			                            " has mortar on two faces: method='wall' bonds one face of a pair; take model='compliant'.");
 		contacts.setFriction(c, law.friction);
 	}
@@ -192,7 +189,7 @@ void RigidScene<K>::writeMortar(vector<int>& ids, vector<Real>& rows)
 		findRows(ids, rows);
 	for (size_t j = 0; j < system.mortar.size(); ++j) {
 		const masonry::MortarJoint<K>& joint = system.mortar[j];
-		Real* of = &rows.at(rowOf[j] * stateSize + 4);
+		Real* of = &rows.at(rowOf[j] * bondedRow + 4);
 		if (joint.isSound() && of[1] == 0)
 			continue;
 		std::fill(of, of + 7, 0);

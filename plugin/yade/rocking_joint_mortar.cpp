@@ -3,6 +3,7 @@
 #include "BlockGeom.hpp"
 #include "BlockPhys.hpp"
 #include "RockingJointEngine.hpp"
+#include "bonded_state.hpp"
 #include "sentence.hpp"
 
 #include "tolerances.hpp"
@@ -15,23 +16,19 @@ namespace yade {
 
 namespace {
 
-constexpr size_t asked = 9;       // numbers of a row of bondsAsked
-constexpr size_t stateSize = 13;  // of bondedState
-constexpr Real firstCrack = 0.02; // largest damage from which a joint counts as cracked
+constexpr size_t asked = 9; // numbers of a row of bondsAsked
 
 /// Gap up to which blocks touch, relative to the smaller thickness of the two.
 constexpr Real touching = 1e-4;
 
-std::string pairOf(int id1, int id2) { return sentence("The joint of bodies ", id1, " and ", id2); }
-
 void checkLaw(const masonry::MortarLaw& law, int id1, int id2)
 {
 	if (!std::isfinite(law.friction))
-		throw std::runtime_error(pairOf(id1, id2) +
+		throw std::runtime_error(jointName(id1, id2) +
 		                         " has mortar and noSlip = True: mortar that breaks in shear slips; give a frictionAngle.");
 	const std::string fault = law.fault();
 	if (!fault.empty())
-		throw std::runtime_error(pairOf(id1, id2) + " has mortar with " + fault + ".");
+		throw std::runtime_error(jointName(id1, id2) + " has mortar with " + fault + ".");
 }
 
 Real largestGap(const masonry::ContactPatch& patch)
@@ -132,12 +129,13 @@ void RockingJointEngine::askForMortar()
 		const int id1 = blocks.ids[contact.body1], id2 = blocks.ids[contact.body2];
 		if (contact.bond)
 			throw std::runtime_error(
-			    pairOf(id1, id2) + " has mortar that another RockingJointEngine has bonded: O.engines must keep that engine, or be made by "
-			                       "dem.engines() while it is there, which goes on with its damage.");
+			    jointName(id1, id2) +
+			    " has mortar that another RockingJointEngine has bonded: O.engines must keep that engine, or be made by "
+			    "dem.engines() while it is there, which goes on with its damage.");
 		const Real gap = largestGap(contact.patch);
 		if (gap > touching * std::min(geom->refR1, geom->refR2))
 			throw std::runtime_error(
-			    sentence(pairOf(id1, id2), " has mortar and a gap of ", gap,
+			    sentence(jointName(id1, id2), " has mortar and a gap of ", gap,
 			             " m: blocks with mortar must touch; the mortar's thickness belongs to their sizes, half a joint to either."));
 		askForBond(c, phys->mortar->law(phys->normalStiffness, phys->shearStiffness, contact.law.friction, id1, id2));
 	}
@@ -172,7 +170,7 @@ void RockingJointEngine::writeMortar()
 			const Vector3r& at = contact.load.place;
 			bondedState.insert(bondedState.end(), {at.x(), at.y(), at.z(), contact.bond->area, 0, 0, 0, 0, 0, 0, 0, NaN, NaN});
 		}
-		Real* row = &bondedState.at(phys.jointRow * stateSize);
+		Real* row = &bondedState.at(phys.jointRow * bondedRow);
 		const masonry::MortarState state = stateOf(*contact.bond);
 		const Real all[] {state.damage, state.worst, state.byTension, state.opening, state.slip, state.opened, state.sheared};
 		std::copy(std::begin(all), std::end(all), row + 4);

@@ -71,8 +71,6 @@ Feature identify(const FacePair& pair, const OverlapTask& task, const OverlapPoi
 	return vertex.kind == Feature::Vertex2 ? vertex : other;
 }
 
-double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 // Weights are Wachspress's coordinates of the centroid c (A Rational Finite Element Basis, 1975): w_i is proportional to
 // E_i / (T_i-1 T_i), with the triangles E_i = (p_i-1, p_i, p_i+1) and T_i = (c, p_i, p_i+1). They are positive, their sum is 1 and their
 // first moment is c. They are continuous: a corner that appears on a side begins with no weight, and two that come out of one share its

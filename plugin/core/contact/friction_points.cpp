@@ -17,7 +17,7 @@ constexpr double roundOff = 1e-9;                                            // 
 // the origin and s along it from the foot of h, it is h/6 (s r + h^2 asinh(s/h)) between the ends.
 Vector2 distanceAndArea(const Vector2& p, const Vector2& q)
 {
-	const double length = (q - p).norm(), twice = p.x() * q.y() - p.y() * q.x();
+	const double length = (q - p).norm(), twice = cross(p, q);
 	if (!(length > 0))
 		return Vector2::Zero();
 	const double h = std::abs(twice) / length;

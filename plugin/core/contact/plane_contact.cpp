@@ -20,11 +20,11 @@ Vector2 turnedLeft(const Vector2& a) { return {-a.y(), a.x()}; }
 double smallerThickness(const ConvexPolygon& a, const ConvexPolygon& b) { return std::min(a.thickness(), b.thickness()); }
 
 // One polygon seen from the other, whose axes are the frame.
-struct RelativePose {
+struct PlaneRelativePose {
 	double cosine, sine;
 	Vector2 offset; // its centre in the frame
 
-	RelativePose(const PlanePose& frame, const PlanePose& seen)
+	PlaneRelativePose(const PlanePose& frame, const PlanePose& seen)
 	    : cosine(frame.cosine * seen.cosine + frame.sine * seen.sine), sine(frame.cosine * seen.sine - frame.sine * seen.cosine),
 	      offset(frame.toLocal(seen.position))
 	{
@@ -41,7 +41,7 @@ struct BestFace {
 };
 
 // Only faces that look towards the other body count: behind any other face it could only be where the two go through each other.
-BestFace bestFaceOf(int body, const ConvexPolygon& own, const ConvexPolygon& other, const RelativePose& pose, int held, double length)
+BestFace bestFaceOf(int body, const ConvexPolygon& own, const ConvexPolygon& other, const PlaneRelativePose& pose, int held, double length)
 {
 	constexpr double infinity = std::numeric_limits<double>::infinity();
 	BestFace best {body, -1, -infinity};
@@ -67,7 +67,7 @@ BestFace bestFaceOf(int body, const ConvexPolygon& own, const ConvexPolygon& oth
 
 // The two polygons as the reference face sees them: `along` is the place on its line, counted along the tangent that follows from the
 // normal (from body 1 to body 2), so that the order of the ends does not depend on the reference; `over` is the height above it.
-struct FacePair {
+struct PlaneFacePair {
 	struct Place {
 		int vertex;
 		double along, over;
@@ -75,7 +75,7 @@ struct FacePair {
 
 	BestFace reference;
 	const ConvexPolygon &polygon, &incidentPolygon; // of the reference, and the other one
-	RelativePose pose;                              // of the other one
+	PlaneRelativePose pose;                         // of the other one
 	double length;                                  // m: tolerances are relative to it
 	const ConvexPolygon::Face& face;
 	Vector2 tangent;
@@ -86,7 +86,7 @@ struct FacePair {
 	Place low {}, high {};
 	double normalAlong {0}, normalOver {0};
 
-	FacePair(const BestFace& axis, const ConvexPolygon& own, const ConvexPolygon& other, const RelativePose& seen, double size)
+	PlaneFacePair(const BestFace& axis, const ConvexPolygon& own, const ConvexPolygon& other, const PlaneRelativePose& seen, double size)
 	    : reference(axis), polygon(own), incidentPolygon(other), pose(seen), length(size), face(own.faces()[axis.face]),
 	      tangent(axis.body == 1 ? turnedLeft(face.normal) : Vector2(-turnedLeft(face.normal))),
 	      referenceLow(placeOnReference(axis.body == 1 ? face.from : face.to)),
@@ -139,7 +139,7 @@ struct FacePair {
 };
 
 // The face that looks most against the reference face.
-void chooseIncident(FacePair& pair, const PlaneMemory& memory)
+void chooseIncident(PlaneFacePair& pair, const PlaneMemory& memory)
 {
 	const int held = memory.reference == 0 ? -1 : pair.reference.body == 1 ? memory.face2 : memory.face1;
 	int best = 0;
@@ -164,9 +164,9 @@ struct End {
 // block with the spin w lifts by d along an upright joint, its own vertex parts from the other block at the rate w d, and the other
 // block's vertex, which then lies below its face, would close at that rate. With friction such a joint carries any force that holds the
 // block, so the wrong vertex jams it.
-End endOfOverlap(const FacePair& pair, double end, const PlaneMemory& memory)
+End endOfOverlap(const PlaneFacePair& pair, double end, const PlaneMemory& memory)
 {
-	const FacePair::Place &own = end > 0 ? pair.referenceHigh : pair.referenceLow, &other = end > 0 ? pair.high : pair.low;
+	const PlaneFacePair::Place &own = end > 0 ? pair.referenceHigh : pair.referenceLow, &other = end > 0 ? pair.high : pair.low;
 	const double inside = end * (own.along - other.along);
 	const int body = pair.reference.body;
 	const Feature ofIncident = Feature::ofVertex(3 - body, other.vertex, pair.reference.face),
@@ -184,7 +184,7 @@ End endOfOverlap(const FacePair& pair, double end, const PlaneMemory& memory)
 
 // Where a face leans on the border of another one, a vertex of it that slides over that border lands nowhere: its gap ends there, at a
 // speed that is all of the sliding, and so does the face that it is over. So it is no end of the overlap where the border is so near.
-bool passes(const FacePair& pair, const End& low, const End& high)
+bool passes(const PlaneFacePair& pair, const End& low, const End& high)
 {
 	return std::abs(pair.normalAlong) > limits::leans && high.along - low.along < limits::passing * pair.length;
 }
@@ -197,7 +197,7 @@ Feature secondNormal(const Feature& point, const ConvexPolygon& own, const Plane
                      const PlanePose& otherPose, double reach)
 {
 	const ConvexPolygon::Face& face = other.faces()[point.face()];
-	const RelativePose pose(otherPose, ownPose);
+	const PlaneRelativePose pose(otherPose, ownPose);
 	const Vector2 place = pose.toFrame(own.vertices()[point.vertex()]), counterClockwise = turnedLeft(face.normal);
 	const bool atTo = counterClockwise.dot(place - other.vertices()[face.from]) > face.length / 2;
 	const int end = atTo ? face.to : face.from;
@@ -228,7 +228,7 @@ bool Plane::findPoints(const Shape& shape1, const Pose& pose1, const Shape& shap
 	const Memory before = memory;
 	memory = {};
 	out = {};
-	const RelativePose second(pose1, pose2), first(pose2, pose1);
+	const PlaneRelativePose second(pose1, pose2), first(pose2, pose1);
 	const double length = smallerThickness(shape1, shape2);
 	const BestFace face1 = bestFaceOf(1, shape1, shape2, second, before.reference == 1 ? before.face1 : -1, length),
 	               face2 = bestFaceOf(2, shape2, shape1, first, before.reference == 2 ? before.face2 : -1, length);
@@ -238,7 +238,7 @@ bool Plane::findPoints(const Shape& shape1, const Pose& pose1, const Shape& shap
 		return false;
 
 	const bool on1 = face.body == 1;
-	FacePair pair(face, on1 ? shape1 : shape2, on1 ? shape2 : shape1, on1 ? second : first, length);
+	PlaneFacePair pair(face, on1 ? shape1 : shape2, on1 ? shape2 : shape1, on1 ? second : first, length);
 	chooseIncident(pair, before);
 	const bool beyondFace = !pair.overlaps();
 	if (beyondFace) {

@@ -9,7 +9,7 @@ namespace masonry {
 namespace {
 
 using Face = ConvexPolyhedron::Face;
-using Edge = ConvexPolyhedron::Edge;
+using Edge3 = ConvexPolyhedron::Edge;
 
 // Largest component of a vertex along a direction.
 double reachAlong(const ConvexPolyhedron& shape, const Vector3& direction)
@@ -89,7 +89,7 @@ bool bestEdgesOfBoxes(const ConvexPolyhedron& box1, const ConvexPolyhedron& box2
 }
 
 // Nearest points of the two straight lines.
-void placeOnEdges(const Edge& edge1, const Edge& edge2, const Vector3& line2, const Vector3& middle2, EdgePair& pair)
+void placeOnEdges(const Edge3& edge1, const Edge3& edge2, const Vector3& line2, const Vector3& middle2, EdgePair& pair)
 {
 	const Vector3 apart = middle2 - edge1.middle;
 	const double cosine = line2.dot(edge1.direction), sineSquared = 1 - cosine * cosine;
@@ -143,25 +143,25 @@ bool bestEdges(const ConvexPolyhedron& shape1, const ConvexPolyhedron& shape2, c
 	const int size1 = static_cast<int>(edges1.size()), size2 = static_cast<int>(edges2.size());
 	Components along2, along1; // of edges 2 along faces 1; of edges 1 along faces 2
 	boost::container::small_vector<Vector3, 32> lines2;
-	for (const Edge& edge : edges2)
+	for (const Edge3& edge : edges2)
 		lines2.push_back(second.rotation * edge.direction);
 	for (const Face& face : shape1.faces())
 		for (const Vector3& line : lines2)
 			along2.push_back(face.normal.dot(line));
 	for (const Face& face : shape2.faces()) {
 		const Vector3 normal = second.rotation * face.normal;
-		for (const Edge& edge : edges1)
+		for (const Edge3& edge : edges1)
 			along1.push_back(normal.dot(edge.direction));
 	}
 	best.separation = least;
 	const Vector3 apart = second.offset + second.rotation * shape2.inside() - shape1.inside();
 	for (int i = 0; i < size1; ++i) {
-		const Edge& edge1 = edges1[i];
+		const Edge3& edge1 = edges1[i];
 		const double *left1 = &along2[edge1.left * size2], *right1 = &along2[edge1.right * size2];
 		for (int j = 0; j < size2; ++j) {
 			if (left1[j] * right1[j] >= 0)
 				continue;
-			const Edge& edge2 = edges2[j];
+			const Edge3& edge2 = edges2[j];
 			const double sign = crossingSign(left1[j], right1[j], along1[edge2.left * size1 + i], along1[edge2.right * size1 + i]);
 			if (sign == 0)
 				continue;

@@ -8,8 +8,6 @@ namespace masonry {
 
 namespace {
 
-double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 ConvexPolygon::Face faceBetween(const std::vector<Vector2>& points, int from, int to)
 {
 	const Vector2 along = points[to] - points[from];

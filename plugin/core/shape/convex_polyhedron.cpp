@@ -19,7 +19,7 @@ std::array<int, 3> widestTriangle(const std::vector<Vector2>& corners)
 		for (int j = i + 1; j < size; ++j)
 			for (int k = j + 1; k < size; ++k) {
 				const Vector2 a = corners[j] - corners[i], b = corners[k] - corners[i];
-				const double area = std::abs(a.x() * b.y() - a.y() * b.x());
+				const double area = std::abs(cross(a, b));
 				if (area > largest * (1 + roundOff)) {
 					largest = area;
 					widest = {i, j, k};

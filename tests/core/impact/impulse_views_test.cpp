@@ -131,7 +131,7 @@ double apart(const Scene& first, const Scene& other, const View& view, double ar
 // Oracle: symmetry. Bounds: contacts 1e-7 times as soft as their response leave 1e-9 of round-off in the shares of redundant points, times
 // the ratio of the responses, at most 100. The solver of many points stops at 1e-8 of the speed, which leaves open how points share where
 // friction hardly depends on it: nine of 1,200 landings differ by more than that, at most three of 200.
-TEST_CASE("the impulses of a landing are the same in every view")
+TEST_CASE("the impulses of a landing are the same in every view", "[long]")
 {
 	std::mt19937 random(1);
 	const std::vector<View> views {{1, 1, false, false}, {2.5, 1, false, true}, {0, 3, false, false},

@@ -37,7 +37,7 @@ Cell cellOf(const Polygon& polygon)
 	Cell cell {Vector2::Zero(), 0};
 	for (size_t i = 2; i < polygon.size(); ++i) {
 		const Vector2 a = polygon[i - 1] - polygon[0], b = polygon[i] - polygon[0];
-		const double triangle = 0.5 * std::abs(a.x() * b.y() - a.y() * b.x());
+		const double triangle = 0.5 * std::abs(cross(a, b));
 		cell.area += triangle;
 		cell.centroid += triangle * (polygon[0] + (a + b) / 3);
 	}

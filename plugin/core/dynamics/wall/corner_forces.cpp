@@ -15,8 +15,6 @@ Eigen::Matrix<double, 2, 3> tangentsOf(const ContactSet<Space>& c, const MortarC
 	return result;
 }
 
-double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 // Corners and where their friction acts, from the centre of body 2, along the tangents of the joint.
 struct FacePlan {
 	Matrix3 axes;
@@ -90,7 +88,7 @@ CornerForces<Space>::CornerForces(const RigidSystem<Space>& s, const MortarJoint
 		normal[i] = c.points().states()[at[i].slot.group][at[i].point].pn[at[i].slot.lane];
 		const Shear<Space> own = shearOf(c, at[i], plan.axes);
 		all += own;
-		torque += cross(plan.grips[i], own);
+		torque += masonry::cross(plan.grips[i], own);
 	}
 	const Eigen::Matrix2d perMoments = moments.inverse();
 	for (const MortarRow<Space>* row : rows) {
@@ -100,7 +98,7 @@ CornerForces<Space>::CornerForces(const RigidSystem<Space>& s, const MortarJoint
 		for (int i = 0; i < size; ++i)
 			normal[i] += row->p[0] * at[i].share * (1 + (plan.corners[i] - plan.centroid).dot(push));
 		all += own;
-		torque += cross(place + plan.along(turn * point.grip2), own);
+		torque += masonry::cross(place + plan.along(turn * point.grip2), own);
 	}
 	PerPoint<double> most(size);
 	double sum = 0, turning = 0;
@@ -115,7 +113,7 @@ CornerForces<Space>::CornerForces(const RigidSystem<Space>& s, const MortarJoint
 		turning += most[i] * (plan.grips[i] - middle).squaredNorm();
 	if (!(turning > 0))
 		return;
-	const double turn = (torque - cross(middle, all)) / turning;
+	const double turn = (torque - masonry::cross(middle, all)) / turning;
 	shear = 0;
 	for (int i = 0; i < size; ++i) {
 		const Vector2 arm = plan.grips[i] - middle, perBound = all / sum + turn * Vector2(-arm.y(), arm.x());

@@ -9,14 +9,12 @@ namespace masonry::wall {
 
 namespace {
 
-double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 // Twice the area of a polygon and three times the moment of that about the origin, by the triangles about its first corner.
 Vector3 areaAndMoment(const PerPoint<Vector2>& polygon)
 {
 	Vector3 sum = Vector3::Zero();
 	for (size_t i = 2; i < polygon.size(); ++i) {
-		const double twice = cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
+		const double twice = masonry::cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
 		sum[0] += twice;
 		sum.tail<2>() += twice * (polygon[0] + polygon[i - 1] + polygon[i]);
 	}
@@ -58,7 +56,7 @@ MortarPatch::MortarPatch(const PerPoint<Vector2>& corners) : shares(corners.size
 	for (int i = 0; i < size; ++i) {
 		const int next = (i + 1) % size;
 		const Vector2 p = polygon[i] - centroid, q = polygon[next] - centroid;
-		const double twice = cross(p, q);
+		const double twice = masonry::cross(p, q);
 		shares[order[i]] += twice / (4 * area);
 		shares[order[next]] += twice / (4 * area);
 		polar += twice / 12 * (p.squaredNorm() + q.squaredNorm() + p.dot(q));

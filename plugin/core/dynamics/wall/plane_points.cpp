@@ -6,7 +6,7 @@ namespace masonry::wall {
 
 namespace {
 
-struct Placed {
+struct PlacedInPlane {
 	Lanes2 position;
 	Lanes cosine, sine;
 
@@ -16,20 +16,20 @@ struct Placed {
 	}
 };
 
-MASONRY_INLINE Placed placed(const Lanes* pose, const int* body)
+MASONRY_INLINE PlacedInPlane placedInPlane(const Lanes* pose, const int* body)
 {
 	Lanes x = pose[body[0]], y = pose[body[1]], cosine = pose[body[2]], sine = pose[body[3]];
 	transpose(x, y, cosine, sine);
 	return {{x, y}, cosine, sine};
 }
 
-MASONRY_INLINE Placed oneOf(const Mask& mask, const Placed& a, const Placed& b)
+MASONRY_INLINE PlacedInPlane oneOf(const Mask& mask, const PlacedInPlane& a, const PlacedInPlane& b)
 {
 	return {select(mask, a.position, b.position), select(mask, a.cosine, b.cosine), select(mask, a.sine, b.sine)};
 }
 
 // One of the two points of four pairs.
-MASONRY_INLINE VertexOverFace<Lanes2, Lanes> located(const FeatureLanes<Plane>& f, const Placed& p1, const Placed& p2)
+MASONRY_INLINE VertexOverFace<Lanes2, Lanes> located(const FeatureLanes<Plane>& f, const PlacedInPlane& p1, const PlacedInPlane& p2)
 {
 	return vertexOverFace(oneOf(f.vertexOn1, p1, p2), oneOf(f.vertexOn1, p2, p1), f.vertex, f.normal, f.faceDistance);
 }
@@ -42,7 +42,7 @@ MASONRY_INLINE Mask beyondFace(const FeatureLanes<Plane>& f, const Lanes& shift,
 // Gaps. Returns which pairs are to be looked up: since they were, they have moved by more than `travel`, or a vertex has left its face.
 MASONRY_INLINE Mask measureGroup(Group<Plane>& group, FeatureGroup<Plane>& features, const Lanes* pose, double travel, unsigned char anew)
 {
-	const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
+	const PlacedInPlane p1 = placedInPlane(pose, group.body1), p2 = placedInPlane(pose, group.body2);
 	const Lanes passed = all(tolerance::wall::leftFace / tolerance::wall::search * travel);
 	Mask stale {};
 	for (int k = 0; k < lanePoints<Plane>; ++k) {
@@ -64,7 +64,7 @@ MASONRY_INLINE Mask measureGroup(Group<Plane>& group, FeatureGroup<Plane>& featu
 MASONRY_INLINE void frameGroup(Group<Plane>& group, const FeatureGroup<Plane>& features, const Lanes* pose, const Lanes* velocity,
                                const Plane::Spin* gyration)
 {
-	const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
+	const PlacedInPlane p1 = placedInPlane(pose, group.body1), p2 = placedInPlane(pose, group.body2);
 	Lanes mass1, mass2, rho1, rho2;
 	for (int i = 0; i < width; ++i) {
 		mass1[i] = velocity[group.body1[i]][3];

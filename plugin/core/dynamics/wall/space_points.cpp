@@ -9,7 +9,7 @@ namespace {
 
 constexpr int poseRows = BodyPacks<Space>::poses;
 
-struct alignas(alignment) Placed {
+struct alignas(alignment) PlacedInSpace {
 	Lanes3 row[3], position, perRho; // rows of the rotation matrix
 
 	MASONRY_INLINE Lanes3 rotate(const Lanes3& local) const { return {dot(row[0], local), dot(row[1], local), dot(row[2], local)}; }
@@ -25,9 +25,9 @@ MASONRY_INLINE Lanes3 threeOf(const Lanes* pose, const int* body, int row, Lanes
 	return {a, b, c};
 }
 
-MASONRY_INLINE Placed placed(const Lanes* pose, const int* body)
+MASONRY_INLINE PlacedInSpace placedInSpace(const Lanes* pose, const int* body)
 {
-	Placed p;
+	PlacedInSpace p;
 	Lanes unused;
 	p.row[0] = threeOf(pose, body, 0, p.position.x);
 	p.row[1] = threeOf(pose, body, 1, p.position.y);
@@ -36,7 +36,7 @@ MASONRY_INLINE Placed placed(const Lanes* pose, const int* body)
 	return p;
 }
 
-MASONRY_INLINE Placed oneOf(const Mask& mask, const Placed& a, const Placed& b)
+MASONRY_INLINE PlacedInSpace oneOf(const Mask& mask, const PlacedInSpace& a, const PlacedInSpace& b)
 {
 	return {{select(mask, a.row[0], b.row[0]), select(mask, a.row[1], b.row[1]), select(mask, a.row[2], b.row[2])},
 	        select(mask, a.position, b.position),
@@ -49,9 +49,9 @@ struct alignas(alignment) Found {
 	Lanes gap, along1, along2;
 };
 
-MASONRY_INLINE Found overFace(const FeatureLanes<Space>& f, const Placed& p1, const Placed& p2)
+MASONRY_INLINE Found overFace(const FeatureLanes<Space>& f, const PlacedInSpace& p1, const PlacedInSpace& p2)
 {
-	const Placed vertexBody = oneOf(f.vertexOn1, p1, p2), faceBody = oneOf(f.vertexOn1, p2, p1);
+	const PlacedInSpace vertexBody = oneOf(f.vertexOn1, p1, p2), faceBody = oneOf(f.vertexOn1, p2, p1);
 	const auto at = vertexOverFace(vertexBody, faceBody, f.vertex, f.normal, f.faceDistance);
 	Found found;
 	found.normal = select(f.vertexOn1, all(-1) * at.outward, at.outward);
@@ -93,7 +93,7 @@ void takeCrossings(const PointPass<Space>& pass, int g, int k, Found& found)
 	}
 }
 
-MASONRY_INLINE Found located(const PointPass<Space>& pass, int g, int k, const Placed& p1, const Placed& p2)
+MASONRY_INLINE Found located(const PointPass<Space>& pass, int g, int k, const PlacedInSpace& p1, const PlacedInSpace& p2)
 {
 	const FeatureLanes<Space>& f = pass.features[g][k];
 	Found found = overFace(f, p1, p2);
@@ -108,7 +108,8 @@ MASONRY_INLINE Lanes response(const Row& a, const Row& b, const Lanes& mass1, co
 	return mass1 * dot(a.arm1, b.arm1) + mass2 * dot(a.arm2, b.arm2);
 }
 
-MASONRY_INLINE void takeRow(Row& row, const Lanes3& axis, const Lanes3& r1, const Lanes3& r2, const Placed& p1, const Placed& p2)
+MASONRY_INLINE void takeRow(Row& row, const Lanes3& axis, const Lanes3& r1, const Lanes3& r2, const PlacedInSpace& p1,
+                            const PlacedInSpace& p2)
 {
 	const Lanes3 a1 = p1.rotateBack(cross(r1, axis)), a2 = p2.rotateBack(cross(r2, axis));
 	row.axis = axis;
@@ -116,8 +117,8 @@ MASONRY_INLINE void takeRow(Row& row, const Lanes3& axis, const Lanes3& r1, cons
 	row.arm2 = {a2.x * p2.perRho.x, a2.y * p2.perRho.y, a2.z * p2.perRho.z};
 }
 
-MASONRY_INLINE void takeFound(PointLanes<Space>& p, FeatureLanes<Space>& f, const Found& found, const Placed& p1, const Placed& p2,
-                              const Lanes& mass1, const Lanes& mass2)
+MASONRY_INLINE void takeFound(PointLanes<Space>& p, FeatureLanes<Space>& f, const Found& found, const PlacedInSpace& p1,
+                              const PlacedInSpace& p2, const Lanes& mass1, const Lanes& mass2)
 {
 	f.arm = found.arm2;
 	const Lanes3 apart = p2.position - p1.position, across = cross(found.normal, found.tangent);
@@ -144,7 +145,7 @@ MASONRY_LANES void measureGaps(const PointPass<Space>& pass, double travel, bool
 	const Lanes* pose = pass.bodies.pose();
 	for (int g = pass.begin; g < pass.end; ++g) {
 		Group<Space>& group = pass.groups[g];
-		const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
+		const PlacedInSpace p1 = placedInSpace(pose, group.body1), p2 = placedInSpace(pose, group.body2);
 		Mask isStale {};
 		const Mask anew = maskOf(stale[g]);
 		for (int k = 0; k < group.count; ++k) {
@@ -169,7 +170,7 @@ MASONRY_LANES void takeFrames(const PointPass<Space>& pass)
 	const Lanes *pose = pass.bodies.pose(), *velocity = pass.bodies.velocity().data();
 	for (int g = pass.begin; g < pass.end; ++g) {
 		Group<Space>& group = pass.groups[g];
-		const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
+		const PlacedInSpace p1 = placedInSpace(pose, group.body1), p2 = placedInSpace(pose, group.body2);
 		Lanes mass1, mass2;
 		for (int i = 0; i < width; ++i) {
 			mass1[i] = velocity[packs<Space> * group.body1[i]][3];

@@ -103,7 +103,7 @@ TEST_CASE("A block that drops nearly flat makes no energy")
 					}
 }
 
-TEST_CASE("A block that drops on another makes no energy")
+TEST_CASE("A block that drops on another makes no energy", "[long]")
 {
 	for (double tilt : {1e-3, 3e-3, 1e-2})
 		for (double restitution : {0., 0.5, 0.9, double(NAN)}) {

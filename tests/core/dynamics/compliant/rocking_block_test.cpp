@@ -85,7 +85,7 @@ struct RockingScene {
 
 } // namespace
 
-TEST_CASE("15 half cycles of a block, slenderness 5, C = 0.9, from 0.9 alpha")
+TEST_CASE("15 half cycles of a block, slenderness 5, C = 0.9, from 0.9 alpha", "[long]")
 {
 	// Rigid-block error of a joint that is pressed in by 1e-5 (1e-6) of the width: the elastic angle, twice the
 	// penetration, against the last peak of 0.04 alpha is 2e-3 (2e-4); the hand-off removes its leading part.
@@ -117,7 +117,7 @@ TEST_CASE("Impact times equal the quadrature of the rigid block")
 	}
 }
 
-TEST_CASE("The restitution that the peaks show is the one asked for")
+TEST_CASE("The restitution that the peaks show is the one asked for", "[long]")
 {
 	for (double slenderness : {1., 3., 5., 8., 12.})
 		for (double C : {0.5, 0.7, 0.9, 1.}) {

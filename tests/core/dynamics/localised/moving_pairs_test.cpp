@@ -192,7 +192,7 @@ TEST_CASE("The widest slab over faces and edges is that of the Minkowski differe
 // Features are those of the patch within tolerance::contact::vertexReach of their ends, 1e-4 of the smallest half size, and a feature that
 // a pair does not have yet may be as deep. A corner moves by 0.2 of the half size in a step at most: half of what it moves between two of
 // 2000 samples is 5e-5.
-TEMPLATE_TEST_CASE("Boxes in free flight strike each other only where they touch, and do not overlap", "", Plane, Space)
+TEMPLATE_TEST_CASE("Boxes in free flight strike each other only where they touch, and do not overlap", "[long]", Plane, Space)
 {
 	const Worst worst = fly<TestType>(pairsFor(10000), 17);
 	CAPTURE(worst.apart, worst.overlap, worst.impulses);

@@ -84,7 +84,7 @@ struct Flight {
 
 // Oracle: symmetry. Bound, of speeds relative to sqrt(g R): a slip that is slower than 1e-3 g h = 1e-6 sqrt(g R) may end anywhere in a step
 // (tolerance::localised::slowSlip), and the landings that follow multiply that by up to a hundred.
-TEST_CASE("a thrown block moves alike in all views")
+TEST_CASE("a thrown block moves alike in all views", "[long]")
 {
 	std::mt19937 random(5);
 	const std::vector<View> views {{1}, {2.5}, {0, 3}, {0, 37}, {0, 1, true}, {2, 10, true}};

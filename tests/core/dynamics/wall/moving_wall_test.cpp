@@ -140,7 +140,7 @@ TEST_CASE("the first excursion of a pier is that of finer steps")
 
 // The mean of the top course, which all finer steps agree on; its corners go their own ways. Bound: that to which the reference of
 // excursions, Gauss-Seidel sweeps, is known.
-TEST_CASE("the top of a wall at 1 g goes as far as with finer steps, whatever the number of courses")
+TEST_CASE("the top of a wall at 1 g goes as far as with finer steps, whatever the number of courses", "[long]")
 {
 	const int courses = GENERATE(10, 16), perLevel = 8;
 	const auto shift = [&](double h, int iterations) {
@@ -182,7 +182,7 @@ TEST_CASE("with a fine tolerance a wall goes as far as by Gauss-Seidel")
 
 // Loads that bounce from iteration to iteration can let the upper half of a high wall slide where it should not, in one of two motions that
 // are nearly the same, by a third farther. Bounds: less than half of that.
-TEST_CASE("a little more of the motion takes the top of a high wall a little farther")
+TEST_CASE("a little more of the motion takes the top of a high wall a little farther", "[long]")
 {
 	const auto [courses, amplitude, more, bound] =
 	    GENERATE(table<int, double, double, double>({{32, 1, 1.01, 0.1}, {34, 0.94, 0.96, 0.15}}));
@@ -198,7 +198,7 @@ TEST_CASE("a little more of the motion takes the top of a high wall a little far
 }
 
 // What is asked of walls, 1e-5 of a block's height, in every step (measured 8.4e-6; lifts begin at 5.75e-6).
-TEST_CASE("blocks of a high wall do not enter each other")
+TEST_CASE("blocks of a high wall do not enter each other", "[long]")
 {
 	const double amplitude = GENERATE(0.98, 1.);
 	Scene scene;
@@ -322,7 +322,7 @@ TEST_CASE("any number of threads gives the bits of one")
 // A wall of bricks that lands flat closes hundreds of joints within two milliseconds. Its next swing is that of a step that tells them
 // apart: the same walls with a sixteenth of the step. With steps that close them together the mean of these five swings is 14 % less.
 // Bound: half of that, and 1 % by which the means are known.
-TEST_CASE("a wall of bricks that lands flat swings back")
+TEST_CASE("a wall of bricks that lands flat swings back", "[long]")
 {
 	const auto swing = [](double amplitude, double h) {
 		Scene scene;

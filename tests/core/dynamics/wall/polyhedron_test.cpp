@@ -79,7 +79,7 @@ TEST_CASE("Drums of polygons that are turned against each other stand on all the
 
 // A block stands while the line along gravity through its centre of mass meets its base. One that leans by 1 % too much turns by
 // 0.01 tan/(1 + tan^2) (cosh(p t) - 1) about a side, p = sqrt(g R/(k^2 + R^2)) > 3 1/s: by 0.03 rad at least in 1.2 s.
-TEST_CASE("Blocks on polygonal bases tilt where their centre of mass leaves the base, in every direction")
+TEST_CASE("Blocks on polygonal bases tilt where their centre of mass leaves the base, in every direction", "[long]")
 {
 	const Base base = GENERATE(Base {regular(6, 0.3)}, Base {regular(3, 0.4)}, Base {{{-0.4, -0.2}, {0.4, -0.2}, {0.2, 0.2}, {-0.2, 0.2}}});
 	const bool localised = GENERATE(false, true);

@@ -145,7 +145,7 @@ TEST_CASE("blocks in space do not enter each other")
 // Dry joints take energy from any motion, and 2 s after the shaking the blocks have found places to stand. Loads that lag must not keep a
 // high wall in motion, joint by joint, on the energy of its sinking: walls that creep like that sink by 3e-4 to 5e-4 m in half a second.
 // Bound: a hundredth of it.
-TEST_CASE("a wall in space that has been shaken comes to rest")
+TEST_CASE("a wall in space that has been shaken comes to rest", "[long]")
 {
 	const double amplitude = GENERATE(0.7, 0.8, 0.95);
 	SpaceScene scene;
@@ -343,7 +343,7 @@ TEST_CASE("a moment turns a block about the axis that it has in the world")
 // lost is asked. An impact has a part in its step and one between that and the next, which gives back some of what the first has taken:
 // energy is compared with that of two steps, and no step says that it has made any. The wall rocks across its plane for three seconds and
 // more.
-TEST_CASE("a wall that was shaken in space loses energy and comes to rest")
+TEST_CASE("a wall that was shaken in space loses energy and comes to rest", "[long]")
 {
 	const double restitution = GENERATE(double(NAN), 0.5);
 	SpaceScene scene(0.7, restitution);

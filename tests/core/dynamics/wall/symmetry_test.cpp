@@ -101,7 +101,7 @@ void checkAlike(const Range& fine, const Range& usual, double apart)
 // Under the parapet's corner a block lifts along an upright joint, whose friction may hold it: there the normal of the wrong face closes at
 // a rate of 5e-8 m/s what the right one opens, and the parapet goes 77 mm. The oracle of the excursion is converged Gauss-Seidel and
 // compliant joints, which reach 97 to 101 mm; `wall` may be 5 % less, as in other walls.
-TEMPLATE_TEST_CASE("a parapet rocks alike however its wall is numbered, and to either side", "", Plane, Space)
+TEMPLATE_TEST_CASE("a parapet rocks alike however its wall is numbered, and to either side", "[long]", Plane, Space)
 {
 	const auto wall = parapet();
 	const size_t top = wall.size() - 2;
@@ -112,7 +112,7 @@ TEMPLATE_TEST_CASE("a parapet rocks alike however its wall is numbered, and to e
 
 // Both piers of the frame rock, each on the joints of its blocks. In space, corners that have slid out of the plane too by 1e-8 m are
 // vertices or crossings of edges, and the bound is that of the default.
-TEMPLATE_TEST_CASE("two piers under a lintel rock alike however they are numbered, and to either side", "", Plane, Space)
+TEMPLATE_TEST_CASE("two piers under a lintel rock alike however they are numbered, and to either side", "[long]", Plane, Space)
 {
 	const auto wall = portal();
 	const size_t lintel = wall.size() - 1;
