@@ -171,6 +171,9 @@ constexpr double vertexReach = 1e-4;
 // looked for off the part below. Smaller: what has sunk deeper goes into the foot; larger: its features may be those of a body that is
 // lifted by as much.
 constexpr double sunk = 1e-2;
+// Distance from a notch between two parts, relative to the thinnest part, within which a corner of another body meets the faces of both.
+// Larger: corners there carry points that are open; smaller: what slides down one face in a step is seen when it is in the other.
+constexpr double notch = 0.02;
 // Overlaps narrower than this are no contact. Smaller: blocks that meet corner to corner push each other sideways;
 // larger: a block sliding off an edge falls that much too early.
 constexpr double sliver = 1e-4;

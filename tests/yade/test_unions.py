@@ -189,6 +189,30 @@ def test_a_wedge_stops_at_a_step(sunk, model, method):
 
 
 @pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("model", MODELS)
+def test_a_corner_slides_down_into_a_notch(model, method):
+    """Between a floor that rises to the notch and a wall that leans away from it, without friction: the corner of a block that comes down along the wall with 1 m/s
+    lands on the floor, and stays above it."""
+    material = stone(0, noSlip=False, frictionAngle=0.0)
+    floor = [(-1, -0.3), (0, 0), (0.7, -0.165), (0.7, -0.5), (-1, -0.5)]
+    wall = [(0, 0), (0.7, -0.165), (0.7, 0.5), (0.25, 0.5)]
+    below = dem.union([np.array([(x, y, z) for x, z in section for y in (-0.3, 0.3)]) for section in (floor, wall)], material)
+    O.bodies[below].dynamic = False
+    down = Vector3(-1, 0, -2).normalized()
+    turn = Quaternion(Vector3.UnitY, 0.25)
+    block = dem.block((0.4, 0.4, 0.4), material, center=-0.05 * down + Vector3(-1e-6, 0, 0) - turn * Vector3(0.2, 0, -0.2), orientation=turn)
+    O.bodies[block].state.vel = down
+    move(method=method, model=model)
+    lowest = []
+    for _ in range(count(0.15)):
+        O.step()
+        corners = dem.geometry(block).vertices
+        heights = (corners @ (-0.3, 0, 1)) / math.hypot(0.3, 1)
+        lowest.append(heights[(corners[:, 0] < 0) & (corners[:, 0] > -1)].min())
+    assert -1e-6 < min(lowest) < 1e-6, min(lowest)
+
+
+@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("mirror", (False, True))
 @pytest.mark.parametrize("side", (-1, 1))
 def test_an_l_tips_at_its_critical_angle(side, mirror, method):

@@ -70,6 +70,17 @@ bool isHidden(const PartPair<K>& pair, const Feature& feature)
 std::array<int, 2> facesAt(const ConvexPolygon& part, int vertex) { return {part.corners()[vertex].before, part.corners()[vertex].after}; }
 const std::vector<int>& facesAt(const ConvexPolyhedron& part, int vertex) { return part.corners()[vertex].faces; }
 
+// Of these, the one that looks most along `outward`.
+template <class Convex, class Vector>
+int faceTowards(const Convex& part, int vertex, const Vector& outward)
+{
+	int best = -1;
+	for (const int face : facesAt(part, vertex))
+		if (best < 0 || outward.dot(part.faces()[face].normal) > outward.dot(part.faces()[best].normal))
+			best = face;
+	return best;
+}
+
 // The search ends a face of a part at its seam, where it takes another face of a body that leans there on its edge. The solid goes on: the
 // face that meets it is that which looks most against it, and the joint is the one under that face, on either side of the seam. Gives the
 // number of that face of the body with the vertex; -1: the vertex is not on a seam.
@@ -84,14 +95,9 @@ int faceAtSeam(const PartPair<K>& pair, const Feature& feature)
 	if (ofFace.size() == 1 || !ofFace.goesOn(feature.face(), toLocal(on1 ? pair.pose2 : pair.pose1, frame.position)))
 		return -1;
 	const int number = on1 ? pair.part1 : pair.part2;
-	const auto& part = ofVertex.part(number);
 	const typename K::Vector normal = frame.axes.row(0).transpose();
 	const typename K::Vector outward = turnBack(on1 ? pair.pose1 : pair.pose2, on1 ? normal : typename K::Vector(-normal));
-	int best = -1;
-	for (const int face : facesAt(part, feature.vertex() - ofVertex.first(number).vertex))
-		if (best < 0 || outward.dot(part.faces()[face].normal) > outward.dot(part.faces()[best].normal))
-			best = face;
-	return best;
+	return faceTowards(ofVertex.part(number), feature.vertex() - ofVertex.first(number).vertex, outward);
 }
 
 // Whether a part has a face in the plane of this one that looks the other way. `near`: m.
@@ -238,6 +244,62 @@ FoundPoints<K> searchAtFeet(const PartPair<K>& pair, bool secondNormals, typenam
 	return best;
 }
 
+// Whether a part rises from the plane of a face of another one, at the place under a corner that is near both, and leaves the face free.
+// Beside its own part, the place has to be inside the one that rises, and the face is free where it ends.
+template <class Convex, class Vector>
+bool isNotch(const Solid<Convex>& solid, int own, int number, const Vector& corner, double reach)
+{
+	const auto& face = solid.part(own).faces()[number];
+	const double height = face.normal.dot(corner) - face.offset;
+	const Vector place = corner - height * face.normal;
+	const double beside = outside(solid.part(own), place), near = tolerance::contact::slack * solid.thickness();
+	const auto isRising = [&](int k) {
+		const auto& part = solid.part(k);
+		return k != own && outside(part, corner) <= reach && outside(part, place) <= (beside <= near ? reach : near) &&
+		       std::any_of(part.vertices().begin(), part.vertices().end(),
+		                   [&](const Vector& vertex) { return face.normal.dot(vertex) - face.offset > reach; });
+	};
+	bool isFound = false;
+	for (int k = 0; k < solid.size() && std::abs(height) <= reach; ++k)
+		isFound |= isRising(k);
+	if (!isFound)
+		return false;
+	Vector back = solid.part(own).inside() - place;
+	back -= back.dot(face.normal) * face.normal;
+	const double far = beside <= near ? 0 : beside + 10 * tolerance::contact::vertexReach * solid.thickness();
+	return !solid.isCovered(solid.first(own).face + number, place + far * back.normalized());
+}
+
+// Adds the corners of one body that are in a notch of the other one, `ofFace`.
+template <class K>
+void addInNotches(const PartPair<K>& pair, int ofFace, FoundPoints<K>& found)
+{
+	using Vector = typename K::Vector;
+	const bool on1 = ofFace == 1;
+	const auto &solid = on1 ? pair.solid1 : pair.solid2, &other = on1 ? pair.solid2 : pair.solid1;
+	const auto &pose = on1 ? pair.pose1 : pair.pose2, &otherPose = on1 ? pair.pose2 : pair.pose1;
+	const int own = on1 ? pair.part1 : pair.part2, part = on1 ? pair.part2 : pair.part1;
+	const double reach = tolerance::contact::notch * solid.thickness();
+	const auto &convex = solid.part(own), &otherConvex = other.part(part);
+	for (int v = 0; solid.size() > 1 && v < int(otherConvex.vertices().size()); ++v) {
+		const Vector corner = toLocal(pose, otherPose.toGlobal(otherConvex.vertices()[v]));
+		if (outside(convex, corner) > reach)
+			continue;
+		for (int f = 0; f < int(convex.faces().size()); ++f) {
+			const Feature feature = numbered(pair, Feature::ofVertex(3 - ofFace, v, f));
+			const Vector outward = turnBack(otherPose, Vector(-turned(pose, convex.faces()[f].normal)));
+			if (!isNotch(solid, own, f, corner, reach) || found.has(feature) || other.isBuried(feature.vertex(), outward))
+				continue;
+			if (found.places == 0) {
+				(on1 ? found.face1 : found.face2) = f;
+				(on1 ? found.face2 : found.face1) = faceTowards(otherConvex, v, outward);
+			}
+			found.features.insert(found.features.begin() + found.places, feature);
+			++found.places;
+		}
+	}
+}
+
 } // namespace
 
 template <class K>
@@ -249,6 +311,8 @@ FoundPoints<K> findPoints(const PartPair<K>& pair, bool secondNormals, typename 
 	for (int i = 0; i < found.places; ++i)
 		if (const int face = faceAtSeam(pair, found.features[i]); face >= 0)
 			(found.features[i].vertexBody() == 1 ? found.face1 : found.face2) = face;
+	for (const int body : {1, 2})
+		addInNotches(pair, body, found);
 	if (!secondNormals)
 		found.places = 0; // as K::findPoints leaves it
 	if (found.face1 >= 0)

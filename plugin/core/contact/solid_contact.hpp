@@ -9,6 +9,10 @@
 // of the other body leaves the part, and the solid goes on in the same plane. And where no part reaches beyond the plane across the normal
 // (Solid::goesBeyond), the edge is one of the solid, between two faces of different parts.
 //
+// In a notch, where the face of one part ends at another part that rises from it, a body can come with a corner alone, which the search of
+// convex parts may take past the end of the face: to the border of the notch, or to a face inside the solid. So a corner there is a point
+// on the face, too; where that ends, its plane goes on inside the other part.
+//
 // Where a part stands on another one, as a step stands on a slab, a body on the slab that has sunk into it by next to nothing is below the
 // foot of the step, and one whose toe has gone into the step has the foot in its own face. The search of the step then takes the foot,
 // which is no corner or edge of the solid, and misses the toe. So it sees the body lifted off the slab; only the features come from there.

@@ -35,7 +35,51 @@ std::vector<ContactFrame<Space>> pointsOnSlab(const Solid<ConvexPolyhedron>& blo
 	return frames;
 }
 
+ConvexPolygon polygon(const std::vector<Vector2>& points)
+{
+	Vector2 centre;
+	const ConvexPolygon hull = ConvexPolygon::hull(points, &centre);
+	return hull.moved(centre);
+}
+
 } // namespace
+
+// A notch between a floor that rises to it and a wall that leans away from it, which stands on a face that falls on the other side: the
+// floor and that face bound one part, and both are as far below a corner that slides down the wall. Convex parts alone have the corner
+// pass the end of the floor, or land on the covered face. The right gap is that above the floor's plane.
+TEST_CASE("A corner that slides down into a notch meets the floor", "[solid]")
+{
+	const Vector2 left(-2, -0.6), right(1.4, -0.33), top(0.5, 1);
+	const Solid<ConvexPolygon> notched({polygon({left, {0, 0}, right, {1.4, -1}, {-2, -1}}), polygon({{0, 0}, right, {1.4, 1}, top})});
+	const Solid<ConvexPolygon> block(polygon({{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}));
+	const Vector2 alongFloor = (-left).normalized(), floor(-alongFloor.y(), alongFloor.x()), wall = Vector2(-top.y(), top.x()).normalized();
+	for (const double angle : {-0.25, -0.1, 0.})
+		for (const double slid : {0.008, 0.003, 1e-4, 3e-5, 1e-5, -1e-5, -0.003})
+			for (const bool isFirst : {false, true}) {
+				const Vector2 corner = slid * top.normalized() + 1e-6 * wall;
+				PlanePose fixed, pose;
+				pose.setAngle(angle);
+				pose.position = corner - pose.rotate({1, -1});
+				int found = 0;
+				for (int part = 0; part < 2; ++part) {
+					PlaneMemory memory;
+					const auto points = isFirst ? findPoints<Plane>({block, pose, 0, notched, fixed, part}, true, memory)
+					                            : findPoints<Plane>({notched, fixed, part, block, pose, 0}, true, memory);
+					for (int i = 0; i < points.places; ++i) {
+						const auto frame = isFirst ? frameOf(points.features[i], block, pose, notched, fixed)
+						                           : frameOf(points.features[i], notched, fixed, block, pose);
+						const Vector2 normal = (isFirst ? -1 : 1) * frame.axes.row(0).transpose();
+						if ((normal - floor).norm() > 1e-9 || (frame.position - corner).norm() > 0.01)
+							continue;
+						++found;
+						CHECK(frame.gap == Approx(floor.dot(corner)).margin(1e-12));
+						CHECK((isFirst ? points.face2 : points.face1) >= 0);
+					}
+				}
+				CAPTURE(angle, slid, isFirst);
+				CHECK(found == 1);
+			}
+}
 
 TEST_CASE("A leaning block whose edge is on a seam meets the plane alone", "[solid]")
 {
