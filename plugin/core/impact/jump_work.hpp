@@ -4,7 +4,8 @@
 //     p.(v - I/2)
 //
 // Friction that ends a slip acts later in the jump, when the base is as fast as what it catches: the slip at the point takes nothing then,
-// though by the mean of the slips before and after it would make p_t.(u_t- + u_t+)/2. The base does that much more work.
+// though by the mean of the slips before and after it would make p_t.(u_t- + u_t+)/2. The base does that much more work. So it does where
+// it catches a slip between two blocks through the lower one of them.
 #include "impact/impulse_problem.hpp"
 #include <algorithm>
 #include <vector>
@@ -31,8 +32,6 @@ public:
 	{
 		double sum = 0;
 		for (size_t k = 0; k < points.size(); ++k) {
-			if (sides[k] == 0)
-				continue;
 			const ImpulsePoint<K>& point = points[k];
 			const Vector friction = point.impulse - point.normal.dot(point.impulse) * point.normal;
 			const double caught = std::max(0., friction.dot(slips[k] + relativeVelocity(bodies, point)) / 2);

@@ -63,9 +63,10 @@ template <class K>
 double EnergyLedger<K>::workOfCatches(const ContactSet<K>& c, const AdmmResults<K>& results) const
 {
 	double sum = 0;
-	for (const auto& [g, i] : c.layout().onBase()) {
+	for (size_t g = 0; g < c.points().groups().size(); ++g) {
 		const Group<K>& group = c.points().groups()[g];
-		for (int k = 0; k < group.count; ++k) {
+		for (int n = 0; n < c.layout().groups()[g].count * group.count; ++n) {
+			const int i = n / group.count, k = n % group.count;
 			double made = 0;
 			for (int r = 1; r < K::rows; ++r)
 				for (const LaneArray* v : {&before, &results.velocity})
