@@ -78,6 +78,8 @@ public:
 		((Real, madeEnergy, 0, Attr::readonly, "Energy that integration errors have added so far [J]; lost energy is not subtracted."))
 		((Real, lostEnergy, 0, Attr::readonly, "Energy that integration errors have removed so far [J]; friction and impacts are not part of it. In the walls of method='wall' it is part of impactDissip and not known apart."))
 		((Real, turnedOver, 0, Attr::readonly, "Largest value so far of kinetic energy plus all dissipated energy [J]."))
+		((Real, toldMade, 0, Attr::readonly, "madeEnergy when the run last warned of it [J]; 0: it has not."))
+		((Real, toldLost, 0, Attr::readonly, "lostEnergy when the run last warned of it [J]; 0: it has not."))
 		((Real, worstResidual, 0, Attr::readonly, "Largest residual of a step so far [m/s]."))
 		((long, substeps, 0, Attr::readonly, "Number of parts into which impacts and stops of sliding have divided the steps of localised structures so far; a step without any counts as one."))
 		((long, events, 0, Attr::readonly, "Number of impacts and stops of sliding that were found inside steps so far."))
@@ -87,9 +89,7 @@ public:
 		((long, failures, 0, Attr::readonly, "Number of steps so far that cannot be trusted: they missed the tolerance, or the laws of an impact or pulse; had no solution because bodies with prescribed motion press blocks from two sides; had more events than mostEvents; added or removed more energy than a sound step; or, in the walls of method='wall', left blocks deep in each other or turned a block by more than 0.25 rad. A step of walls that ends above its tolerance is not counted: see velocityResidual. One failure each is added when madeEnergy or lostEnergy reaches a twentieth of turnedOver, and whenever it has grown tenfold since."))
 		((string, firstFailure, "", Attr::readonly, "Description of the first failure: time, blocks and residual. Steps whose residual is below 1e-6 of the speed that gravity gives in a step are counted but not described."))
 		((Real, potentialShift, 0, Attr::hidden, "From the potential energy of the poses to that which belongs to the velocities of the walls of method='wall', after the last step [J]."))
-		((Real, toldMade, 0, Attr::hidden, ""))
 		((Real, lift, 0, Attr::hidden, "Energy that lifts all blocks by the smallest half size, the largest so far [J]."))
-		((Real, toldLost, 0, Attr::hidden, ""))
 		((RigidMemory, memory, , Attr::hidden, "")),
 		/* ctor */,
 		.add_property("kinetic", &MoreauJeanIntegrator::kinetic, "Kinetic energy now [J].")

@@ -39,6 +39,8 @@ public:
 		((Real, madeEnergy, 0, Attr::readonly, "Energy that integration errors have added so far [J]; lost energy is not subtracted. Causes: a spring acts from the start of the step in which its point closes, or to the end of the step in which it opens; a corner that passes to another face, or becomes the new pivot, is suddenly deeper or stiffer. Use a smaller dt, a smaller penetration or rigid blocks to reduce it."))
 		((Real, lostEnergy, 0, Attr::readonly, "Energy that integration errors have removed so far, for the same causes [J]; dashpots, friction and impacts are not part of it."))
 		((Real, turnedOver, 0, Attr::readonly, "Largest value so far of kinetic and elastic energy plus all dissipated energy [J]."))
+		((Real, toldMade, 0, Attr::readonly, "madeEnergy when the run last warned of it [J]; 0: it has not."))
+		((Real, toldLost, 0, Attr::readonly, "lostEnergy when the run last warned of it [J]; 0: it has not."))
 		((Real, kinetic, 0, Attr::readonly, "Kinetic energy now [J]."))
 		((Real, potential, 0, Attr::readonly, "Potential energy of gravity now, zero at the origin [J]."))
 		((Real, elastPotential, 0, Attr::readonly, "Elastic energy stored in the joints and the ties now [J]."))
@@ -54,8 +56,6 @@ public:
 		((vector<Real>, bondedState, , Attr::readonly, "Numbers of each joint that has been bonded, in rows of 13 (dem.damage): centre [m], area [m^2], mean and largest damage, share of the damage by tension, largest opening and slip of its cracks [m], energies spent in tension and in shear [J], time of the first crack and of the last one [s]."))
 		((vector<Real>, bondsAsked, , Attr::readonly, "Joints that dem.bond has asked for and the next step makes, in rows of 9: two ids and the law of the mortar."))
 		((Real, tieEnergy, 0, Attr::hidden, "Elastic energy of the ties in elastPotential [J]."))
-		((Real, toldMade, 0, Attr::hidden, ""))
-		((Real, toldLost, 0, Attr::hidden, ""))
 		((bool, toldDeep, false, Attr::hidden, ""))
 		((long, lastStep, -1, Attr::hidden, "")),
 		/* ctor */,

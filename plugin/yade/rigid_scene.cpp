@@ -109,9 +109,9 @@ masonry::StepReport RigidScene<K>::advance()
 		warned.bases = true;
 		LOG_WARN(
 		    "t = " << scene.time
-		           << " s: blocks of a structure stand on bodies that move in different ways. Friction leaves open how much each of these "
-		              "carries, and method='wall' may let one take along what should slide on both: compare with "
-		              "dem.engines(method='localised') or "
+		           << " s: blocks of a structure stand on bodies that different engines move, or whose velocities differ (those that move "
+		              "alike belong in the ids of one engine). Friction leaves open how much each of these carries, and method='wall' may "
+		              "let one take along what should slide on both: compare with dem.engines(method='localised') or "
 		              "dem.engines(model='compliant').");
 	}
 	return report;

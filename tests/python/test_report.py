@@ -42,6 +42,15 @@ def test_a_run_that_makes_or_loses_energy_is_not_to_be_trusted(model, made, lost
     assert len(sentences) == said and all(one.startswith("Do not trust this run: ") for one in sentences)
 
 
+def test_a_run_that_has_not_warned_of_its_energies_is_not_called_untrustworthy():
+    """A scene at rest turns over 1e-9 J and makes as little: nothing beside the energy that lifts its blocks, which the engine knows."""
+    about = {"model": {"model": "planar"}, "solver": {"madeEnergy": 2e-9, "lostEnergy": 1e-9, "turnedOver": 3e-9, "failures": 0}}
+    about["solver"].update(toldMade=0.0, toldLost=0.0)
+    assert words.failures(about) == []
+    about["solver"]["toldMade"] = 2e-9
+    assert len(words.failures(about)) == 1
+
+
 class Page(html.parser.HTMLParser):
     """Tags that are open, texts by section, and what is loaded from elsewhere. Raises where tags do not match."""
 

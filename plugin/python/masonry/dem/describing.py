@@ -15,7 +15,7 @@ from yade import O, config, wrapper
 _MATERIAL = ("density", "frictionAngle", "restitution", "noSlip", "normalStiffness", "shearStiffness")
 _INTEGRATOR = {"chosenModel": "model", "reason": "reason", "method": "method", "impactOrder": "impact order", "tolerance": "tolerance",
                "gravity": "gravity"}
-_SOLVER = ("worstResidual", "failures", "firstFailure", "madeEnergy", "lostEnergy", "turnedOver", "movingSteps", "substeps", "events")
+_SOLVER = ("worstResidual", "failures", "firstFailure", "madeEnergy", "lostEnergy", "toldMade", "toldLost", "turnedOver", "movingSteps", "substeps", "events")
 
 
 def about(ids, motions):

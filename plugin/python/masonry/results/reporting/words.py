@@ -141,12 +141,13 @@ def _of_drift(way, height, moved):
 
 
 def _distrust(about):
-    """Sentences on energy that came from nothing or vanished, where it is the share of what was turned over of which the run has warned."""
+    """Sentences on energy that came from nothing or vanished, where the run has warned of it and it still is that share of what was turned over."""
     given, compliant = about.get("solver", {}), about.get("model", {}).get("model") == "compliant"
     turned, said = given.get("turnedOver") or 0, []
-    for name, what, most in (("madeEnergy", "come from nothing", _core.MADE_BY_JOINTS if compliant else _core.MADE_SHARE), ("lostEnergy", "vanished", _core.MADE_SHARE)):
-        energy = given.get(name) or 0
-        if turned > 0 and energy > most * turned:
+    for of, what, most in (("made", "come from nothing", _core.MADE_BY_JOINTS if compliant else _core.MADE_SHARE), ("lost", "vanished", _core.MADE_SHARE)):
+        energy = given.get(f"{of}Energy") or 0
+        warned = given.get(f"told{of.capitalize()}", energy) > 0  # files of before do not have it
+        if warned and turned > 0 and energy > most * turned:
             said.append(f"Do not trust this run: {quantity(energy, 'J')} of energy have {what}, {100 * energy / turned:.2g} % of what was turned over")
     return said
 
