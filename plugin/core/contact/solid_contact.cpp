@@ -70,7 +70,7 @@ bool isHidden(const PartPair<K>& pair, const Feature& feature)
 std::array<int, 2> facesAt(const ConvexPolygon& part, int vertex) { return {part.corners()[vertex].before, part.corners()[vertex].after}; }
 const std::vector<int>& facesAt(const ConvexPolyhedron& part, int vertex) { return part.corners()[vertex].faces; }
 
-// Of these, the one that looks most along `outward`.
+// Returns the one of these faces that looks most along `outward`.
 template <class Convex, class Vector>
 int faceTowards(const Convex& part, int vertex, const Vector& outward)
 {
