@@ -138,8 +138,7 @@ def shaken(model, walls, stiffness=1e7, **how):
 
 @pytest.mark.parametrize("model, walls", [("planar", False), ("planar", True), ("spatial", True), ("compliant", False)])
 def test_the_balance_of_energies_on_a_record(model, walls):
-    """The balance of compliant joints misses 3e-3 to 4e-3 of the work of the base at steps of 5e-6 to 4e-5 s, which is 4e-4 of what is turned over; without ties 2e-3. In walls the
-    energy of a tie belongs to the middle of the step, as velocities do: a landing with 0.16 m/s under a pull of 1 kN moves it by F v h/2 = 0.06 J, of either sign."""
+    """The balance of compliant joints misses 3e-3 to 4e-3 of the work of the base at steps of 5e-6 to 4e-5 s, which is 4e-4 of what is turned over; without ties 2e-3."""
     made, _, motion = shaken(model, walls)
     balance = Balance()
     dem.run(until=motion)
@@ -148,7 +147,7 @@ def test_the_balance_of_energies_on_a_record(model, walls):
     in_ties = sum(tie.energy for tie in made)
     assert e["elastPotential"] > in_ties if model == "compliant" else e["elastPotential"] == pytest.approx(in_ties)  # joints have some too
     assert abs(balance.error()) < (5e-3 if model == "compliant" else 2e-3) * e["baseWork"]
-    assert e["dampDissip"] > -(0.06 if walls else 1e-3 * e["baseWork"])
+    assert e["dampDissip"] > -1e-3 * e["baseWork"]
 
 
 @pytest.mark.parametrize("other, stiffness, share", ((("planar", True), 1e7, 0.01), (("compliant", False), 1e6, 0.05)))

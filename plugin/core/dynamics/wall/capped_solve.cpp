@@ -90,8 +90,7 @@ SpinRow<K>* CappedSolve<K>::takeWork(const RigidSystem<K>& s, const AdmmProblem<
 		row.couple = row.held ? (held++)->couple : 0;
 		row.work = jointWork(s, problem.contacts, results, works, row);
 		row.work.add(row.spent);
-		const double unseen = row.gainUntilLanding(problem.contacts.bodies().velocity(), problem.load, results.velocity);
-		row.work.gain += beside[k] + std::max(0., unseen);
+		row.work.gain += beside[k];
 		ranges[k].last = {row.held, row.held && row.work.isActive(missed), row.rate(results.velocity), row.couple, row.work};
 		if (ranges[k].last.makesEnergy && row.work.gain > most) {
 			worst = &row;

@@ -3,9 +3,7 @@
 // couple and of the impulses at its points, on the mean of the relative velocities before and after (JointWork); what friction and impacts
 // take at other joints does not pay for it. Joints without a row land plastically, and yet gain where their blocks moved apart before the
 // impact pressed them together again: the rows at these blocks share that gain. Row and points of a step and of the instant after it are
-// one impact, whose last part gives back a little of what the first has taken: the balance is that of both. Velocities belong to the
-// middle of the step: an earlier landing makes the kinetic energy that gravity takes from its blocks until then, and gives them where none
-// has landed, unless that is part of the gain.
+// one impact, whose last part gives back a little of what the first has taken: the balance is that of both.
 //
 // The row with the largest gain is left out, and the rest is solved again, until no joint makes energy: a joint without its row lands with
 // its natural restitution. Then these rows come back with the largest spins that make no energy. While no other contact opens, closes or

@@ -244,7 +244,6 @@ bool RockingEvents<K>::describe(const RigidSystem<K>& s, const ContactSet<K>& c,
 	if (event.before < h * scale::acceleration(s) / s.bodies[event.block].shape->radius()) // the step does not resolve it
 		event.asked = NAN;
 	event.time = s.time + h * (1 - event.share);
-	event.untilLanding = h * (0.5 - event.share) * s.bodies[event.block].mass * s.gravity;
 	return true;
 }
 
@@ -259,7 +258,6 @@ SpinRow<K> RockingEvents<K>::row(const ContactSet<K>& c, const Event& event, dou
 	}
 	result.target = event.before * (1 - share + share * event.restitution);
 	result.face = event.face;
-	result.untilLanding = speedArm<K>(c.bodies(), event.block, event.untilLanding, K::Vector::Zero());
 	result.spent = event.spent;
 	return result;
 }

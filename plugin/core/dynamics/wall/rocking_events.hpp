@@ -75,15 +75,14 @@ private:
 		double before, speed, share;
 		typename K::Spin axis;
 		typename K::Vector normal;
-		typename K::Vector untilLanding;    // impulse of the block's weight from the middle of its step to the landing, N s
 		std::array<Carrier, 3> carriers {}; // two ends of the old pivot, new support
 		JointWork spent;                    // in the step, with its row
 
 		template <class Archive>
 		void serialize(Archive& archive)
 		{
-			archive(block, support, face, asked, restitution, time, before, speed, share, axis, normal, untilLanding, spent.gain,
-			        spent.exchanged, carriers);
+			archive(block, support, face, asked, restitution, time, before, speed, share, axis, normal, spent.gain, spent.exchanged,
+			        carriers);
 		}
 	};
 	struct Joint {

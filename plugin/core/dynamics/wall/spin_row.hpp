@@ -42,7 +42,6 @@ struct SpinRow {
 	std::array<Part, 4> parts; // block, old support (the two ends of a pivot that is an edge), new support
 	double target;             // rad/s
 	int face {-1};             // of the block: the points of its joint
-	Arm untilLanding {};       // work of the block's weight from the middle of the step, to which velocities belong, to the landing, J
 	double couple {0};         // result: N m s
 	JointWork spent;           // of the same impact before this solve
 	JointWork work;            // result: with this solve, and with what joints beside gain (CappedSolve)
@@ -65,13 +64,6 @@ struct SpinRow {
 		for (const Part& part : parts)
 			sum -= v[packs<K> * part.body][3] > 0 ? 0 : along(v, part);
 		return sum;
-	}
-	// By how much more the block's kinetic energy jumps at the landing than in the middle of the step, where its velocity goes from
-	// `before`, with the `load` that forces add, to `after`, J.
-	double gainUntilLanding(const LaneArray& before, const LaneArray& load, const LaneArray& after) const
-	{
-		const Part weight {block(), untilLanding};
-		return along(after, weight) - along(before, weight) - along(load, weight);
 	}
 	// Adds the momentum that a couple gives to the free bodies.
 	void push(double couple, const LaneArray& velocity, LaneArray& momentum) const
